@@ -1,0 +1,79 @@
+"""A scene's compiled equations of motion, under the names that an integrator asks for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from continuum_dyn.motion_kernel import RECIPE
+from continuum_dyn.profiles import Span
+from statics import codegen
+from statics.errors import InputError
+from statics.scene import Scene
+
+LEDGER = ("kinetic_energy", "elastic_energy", "gravity_energy", "input_power", "dissipated_power")
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What follows from states: arrays over samples and disks; ``ledger`` by glossary name."""
+
+    disk_x: np.ndarray
+    disk_y: np.ndarray
+    disk_theta: np.ndarray
+    tip_speed: np.ndarray
+    ledger: dict[str, np.ndarray]
+
+
+class Dynamics:
+    """The motion kernel and the numbers of one scene.
+
+    The state is y = (q, u, input_work, dissipated_energy); q and u hold each segment's coordinates and
+    rates in turn. Raises ``InputError`` for a scene without inertia: it has no acceleration.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        if not scene.has("inertia"):
+            raise InputError("motion needs the effect 'inertia'. Add inertia = {} to [effects].")
+        self.scene = scene
+        self.dofs = len(scene.coordinates)
+        self.size = scene.arm.disks * self.dofs
+        self.kernel = codegen.load(scene, RECIPE)
+        self.segments = scene.table("segment", self.kernel.SEGMENT_COLUMNS)
+        self.disks = scene.table("disk", self.kernel.DISK_COLUMNS)
+
+    def state(self, coordinates: np.ndarray, rates: np.ndarray | None = None) -> np.ndarray:
+        """State from coordinates and rates, shape (disks, dofs), at rest by default; ledger at zero."""
+        u = np.zeros_like(coordinates) if rates is None else rates
+        return np.concatenate([coordinates.ravel(), u.ravel(), [0.0, 0.0]])
+
+    def rate(self, t: float, y: np.ndarray, span: Span) -> np.ndarray:
+        """dy/dt."""
+        return self.kernel.rate(t, y, span.pieces, self.segments, self.disks, self.dofs)
+
+    def jacobian(self, t: float, y: np.ndarray, span: Span) -> np.ndarray:
+        """d(rate)/dy, exact."""
+        return self.kernel.rate_jacobian(t, y, span.pieces, self.segments, self.disks, self.dofs)
+
+    def clearance(self, y: np.ndarray) -> float:
+        """Smallest length or hole-to-hole length over L0."""
+        return self.kernel.clearance_sweep(y[: self.size].reshape(-1, self.dofs), self.segments)
+
+    def split(self, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and rates, each (samples, disks, dofs), of states (samples, size)."""
+        shape = (len(states), self.scene.arm.disks, self.dofs)
+        q, u = states[:, : self.size], states[:, self.size : 2 * self.size]
+        return np.ascontiguousarray(q).reshape(shape), np.ascontiguousarray(u).reshape(shape)
+
+    def observe(self, states: np.ndarray, tension: np.ndarray) -> Observation:
+        """Poses, tip speed, energies and powers at states (samples, size) under tension (samples, cables)."""
+        q, u = self.split(states)
+        pose, velocity = np.empty((*q.shape[:2], 3)), np.empty((*q.shape[:2], 3))
+        ledger = np.empty((len(states), len(LEDGER)))
+        self.kernel.observe(q, u, tension, self.segments, self.disks, pose, velocity, ledger)
+        return Observation(
+            disk_x=pose[:, :, 0],
+            disk_y=pose[:, :, 1],
+            disk_theta=pose[:, :, 2],
+            tip_speed=np.hypot(velocity[:, -1, 0], velocity[:, -1, 1]),
+            ledger=dict(zip(LEDGER, ledger.T, strict=True)),
+        )

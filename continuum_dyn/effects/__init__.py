@@ -1,0 +1,12 @@
+"""The effects that exist in motion only, listed with those that hold at rest."""
+
+from continuum_dyn.effects.inertia import Inertia
+from continuum_dyn.effects.material_damping import MaterialDamping
+from continuum_dyn.effects.rotary_inertia import RotaryInertia
+from statics.effects import STATIC_EFFECTS, Effect
+
+EFFECTS: dict[str, type[Effect]] = STATIC_EFFECTS | {
+    effect.name: effect for effect in (Inertia, RotaryInertia, MaterialDamping)
+}
+
+__all__ = ["EFFECTS", "Inertia", "MaterialDamping", "RotaryInertia"]

@@ -1,0 +1,31 @@
+"""Inertia of the disks against angular acceleration in the plane."""
+
+from typing import Any, ClassVar
+
+from pydantic.dataclasses import dataclass
+
+from statics.arm import Arm
+from statics.checked import STRICT
+from statics.effects.effect import Account, Pair, Place
+
+
+@dataclass(frozen=True, config=STRICT)
+class RotaryInertia:
+    """M = -I alpha along each disk's angle; I is about an in-plane diameter, Table 1's I_xx."""
+
+    name: ClassVar[str] = "rotary_inertia"
+    place: ClassVar[Place] = "disk"
+    account: ClassVar[Account] = "kinetic_energy"
+    acts_at_rest: ClassVar[bool] = False
+    coordinates: ClassVar[tuple[str, ...]] = ()
+    arm_quantities: ClassVar[tuple[str, ...]] = ("disk_inertia",)
+    quantities: ClassVar[tuple[str, ...]] = ()
+    source: ClassVar[str] = "Kane and Levinson 1985, generalized inertia forces"
+
+    def pairs(self, at: Any) -> list[Pair]:
+        """One pair: inertia moment, angle of the disk."""
+        return [Pair(-at.disk_inertia * at.angular_acceleration, at.angle)]
+
+    def columns(self, arm: Arm) -> dict[str, float]:
+        """None of its own."""
+        return {}

@@ -1,0 +1,147 @@
+"""The equations of motion on the chain: plain Python, composed into motion kernels.
+
+The integrator's state is y = (q, u, input_work, dissipated_energy): coordinates and rates of all
+segments, row by row, and the two time integrals of the power ledger.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from continuum_dyn.generated import (
+        CHAIN_COLUMNS,
+        MOTION_START,
+        MOTION_TANGENT_START,
+        OBSERVE_START,
+        RESIDUAL_TANGENT_START,
+        motion_step,
+        motion_tangent_step,
+        observe_step,
+        residual_tangent_step,
+    )
+    from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
+
+
+def tension_at(t: float, pieces: np.ndarray, tension: np.ndarray) -> None:
+    """Tensions at time t from one piece of each profile: start, value, slope, amplitude, angular frequency."""
+    for c in range(tension.shape[0]):
+        tension[c] = (
+            pieces[c, 1] + pieces[c, 2] * (t - pieces[c, 0]) + pieces[c, 3] * math.sin(pieces[c, 4] * t)
+        )
+
+
+def motion_sweep(
+    q: np.ndarray,
+    u: np.ndarray,
+    w: np.ndarray,
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+) -> tuple[float, float]:
+    """Outwards: motion and loads of all segments and disks; returns power in and power dissipated."""
+    carried = MOTION_START
+    for i in range(q.shape[0]):
+        carried = motion_step(i, carried, q, u, w, tension, segments, disks, chain)
+    return carried[0], carried[1]
+
+
+def solve_mass(
+    segments: np.ndarray, disks: np.ndarray, chain: np.ndarray, residual: np.ndarray, w: np.ndarray
+) -> None:
+    """w = -M^-1 residual, in one inward and one outward sweep."""
+    descent = np.empty_like(residual)
+    eliminate_sweep(segments, disks, chain, residual, descent, descent)
+    substitute_sweep(chain, descent, w)
+
+
+def acceleration(
+    q: np.ndarray,
+    u: np.ndarray,
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    w: np.ndarray,
+) -> tuple[float, float]:
+    """Accelerations of all coordinates into ``w``, shape (n, dofs); returns power in and dissipated."""
+    residual = np.empty_like(q)
+    w[:] = 0.0
+    powers = motion_sweep(q, u, w, tension, segments, disks, chain)
+    residual_sweep(disks, chain, residual)
+    solve_mass(segments, disks, chain, residual, w)
+    return powers
+
+
+def rate(t: float, y: np.ndarray, pieces: np.ndarray, segments: np.ndarray, disks: np.ndarray, dofs: int) -> np.ndarray:
+    """dy/dt: the right-hand side for any integrator."""
+    n = segments.shape[0]
+    size = n * dofs
+    q, u = y[:size].reshape((n, dofs)), y[size : 2 * size].reshape((n, dofs))
+    tension, chain = np.empty(pieces.shape[0]), np.empty((n, CHAIN_COLUMNS))
+    tension_at(t, pieces, tension)
+    y_rate = np.empty_like(y)
+    y_rate[:size] = y[size : 2 * size]
+    w = y_rate[size : 2 * size].reshape((n, dofs))
+    y_rate[2 * size], y_rate[2 * size + 1] = acceleration(q, u, tension, segments, disks, chain, w)
+    return y_rate
+
+
+def rate_jacobian(
+    t: float, y: np.ndarray, pieces: np.ndarray, segments: np.ndarray, disks: np.ndarray, dofs: int
+) -> np.ndarray:
+    """d(rate)/dy, exact: one tangent sweep and one elimination for each coordinate and each rate.
+
+    From M w = -r(q, u, w = 0) follows M dw = -(dr along dq, du at fixed w).
+    """
+    n = segments.shape[0]
+    size = n * dofs
+    q, u = y[:size].copy().reshape((n, dofs)), y[size : 2 * size].copy().reshape((n, dofs))
+    tension, chain = np.empty(pieces.shape[0]), np.empty((n, CHAIN_COLUMNS))
+    tension_at(t, pieces, tension)
+    w, residual, w_change = np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
+    acceleration(q, u, tension, segments, disks, chain, w)
+    motion_sweep(q, u, w, tension, segments, disks, chain)
+    residual_sweep(disks, chain, residual)
+    jacobian = np.zeros((y.shape[0], y.shape[0]))
+    direction = np.zeros((2, n, dofs))
+    for column in range(2 * size):
+        k = column % size
+        direction[column // size, k // dofs, k % dofs] = 1.0
+        carried = MOTION_TANGENT_START
+        for i in range(n):
+            carried = motion_tangent_step(
+                i, carried, q, u, w, tension, segments, disks, chain, direction[0], direction[1]
+            )
+        jacobian[2 * size, column], jacobian[2 * size + 1, column] = carried[0], carried[1]
+        inward = RESIDUAL_TANGENT_START
+        for i in range(n - 1, -1, -1):
+            inward = residual_tangent_step(i, inward, disks, chain, residual)
+        solve_mass(segments, disks, chain, residual, w_change)
+        direction[column // size, k // dofs, k % dofs] = 0.0
+        if column >= size:
+            jacobian[k, column] = 1.0
+        jacobian[size : 2 * size, column] = w_change.ravel()
+    return jacobian
+
+
+def observe(
+    q: np.ndarray,
+    u: np.ndarray,
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    pose: np.ndarray,
+    velocity: np.ndarray,
+    ledger: np.ndarray,
+) -> None:
+    """For every sample, from q, u (samples, n, dofs) and tension (samples, cables): poses and velocities of
+    the disks, (samples, n, 3); kinetic, elastic, gravity energy, power in, power dissipated, (samples, 5)."""
+    for s in range(q.shape[0]):
+        carried = OBSERVE_START
+        for i in range(q.shape[1]):
+            carried = observe_step(i, carried, q[s], u[s], tension[s], segments, disks, pose[s], velocity[s])
+        for k in range(5):
+            ledger[s, k] = carried[k]

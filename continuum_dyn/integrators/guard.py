@@ -1,0 +1,109 @@
+"""The guard around every solver: budgets, non-finite states, geometric limits, Ctrl-C, progress.
+
+``solve_ivp`` has none of these. A guarded solver fails at the first step that breaks a bound, so that
+``solve_ivp`` returns what it had; the ``Monitor`` knows why.
+"""
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.integrate import OdeSolver
+
+from statics.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What one run may cost at most."""
+
+    steps: int = 10_000_000
+    seconds: float = 3600.0
+
+
+@dataclass
+class Monitor:
+    """Watches a run over all of its spans; ``outcome`` is set when a bound is broken.
+
+    ``inspect(t, y)`` returns the outcome and the words for it where a state is not acceptable, else
+    None; ``progress(t)`` is called after each step.
+    """
+
+    inspect: Callable[[float, np.ndarray], tuple[Outcome, str] | None]
+    progress: Callable[[float], None] | None = None
+    budget: Budget = Budget()
+    steps: int = 0
+    started: float = field(default_factory=time.monotonic)
+    interrupted: bool = False
+    outcome: Outcome | None = None
+    message: str = ""
+
+    def stop(self, outcome: Outcome, message: str) -> str:
+        """Note why the run ends; the first reason counts."""
+        if self.outcome is None:
+            self.outcome, self.message = outcome, message
+        return self.message
+
+    def after_step(self, t: float, y: np.ndarray) -> str | None:
+        """Count an accepted step and check it; a text says that it must be the last."""
+        self.steps += 1
+        if self.interrupted:
+            return self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
+        found = self.inspect(t, y)
+        if found is not None:
+            return self.stop(*found)
+        if self.steps >= self.budget.steps:
+            return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.steps} steps taken by t = {t:.6g} s")
+        if time.monotonic() - self.started > self.budget.seconds:
+            return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.budget.seconds:g} s used up by t = {t:.6g} s")
+        if self.progress is not None:
+            self.progress(t)
+        return None
+
+
+class Guard(OdeSolver):
+    """Mixin before a solver class: the same steps, watched. Takes ``monitor`` as a solver option."""
+
+    def __init__(self, *arguments: Any, monitor: Monitor, **options: Any) -> None:
+        self.monitor = monitor
+        super().__init__(*arguments, **options)
+
+    def step(self) -> str | None:
+        """One step of the solver; failed if the solver fails or the monitor objects."""
+        try:
+            with np.errstate(all="ignore"):
+                message = super().step()
+        except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+            self.status = "failed"
+            return self.monitor.stop(Outcome.DIVERGED, f"{error} after t = {self.t:.6g} s")
+        if self.status == "failed":
+            return self.monitor.stop(Outcome.DIVERGED, f"{message} at t = {self.t:.6g} s")
+        objection = self.monitor.after_step(self.t, self.y)
+        if objection is not None:
+            self.status = "failed"
+            return objection
+        return message
+
+
+@contextmanager
+def interruptible(monitor: Monitor) -> Iterator[None]:
+    """Ctrl-C ends the run after the step under way; pressed again, at once."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    previous = signal.getsignal(signal.SIGINT)
+
+    def on_interrupt(_signal: int, _frame: object) -> None:
+        monitor.interrupted = True
+        signal.signal(signal.SIGINT, previous)
+
+    signal.signal(signal.SIGINT, on_interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous)

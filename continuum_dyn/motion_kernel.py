@@ -1,0 +1,40 @@
+"""The kernel of a scene in motion: accelerations, their exact Jacobian, energies and powers."""
+
+from pathlib import Path
+
+import statics.chain
+from statics.codegen import DERIVATION, Recipe
+from statics.scene import Scene
+
+_HERE = Path(__file__).parent
+_CHAIN = Path(statics.chain.__file__)
+_EQUATIONS = _HERE / "equations_of_motion.py"
+
+
+def write(scene: Scene) -> str:
+    """Text of the kernel module; derives everything with sympy."""
+    from continuum_dyn import motion_steps
+    from continuum_dyn.virtual_power import derive_dynamics
+    from statics import recursion
+    from statics.compose import compose
+
+    forces = derive_dynamics(scene)
+    steps = [
+        motion_steps.motion_step(forces),
+        recursion.residual_step(forces),
+        recursion.eliminate_step(forces, recursion.ACCELERATION),
+        recursion.substitute_step(forces),
+        motion_steps.motion_tangent_step(forces),
+        motion_steps.residual_tangent_step(forces),
+        motion_steps.observe_motion_step(forces),
+        recursion.clearance_step(forces),
+    ]
+    names = [effect.name for effect in scene.effects]
+    return compose("Dynamics of a planar cable-driven arm.", forces, names, steps, (_CHAIN, _EQUATIONS))
+
+
+RECIPE = Recipe(
+    "motion",
+    write,
+    (*DERIVATION, _EQUATIONS, *(_HERE / f"{stem}.py" for stem in ("virtual_power", "motion_steps", "motion_kernel"))),
+)

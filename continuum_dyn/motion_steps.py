@@ -1,0 +1,146 @@
+"""One step of the sweeps that only motion needs: velocities, accelerations, and their derivatives.
+
+With v0, omega0, a0, alpha0 of the near disk, d the segment's reach and u, w its rates and
+accelerations (the time derivatives of Rone 2012, Eq. 10):
+
+    v = v0 + omega0 z x R d + R d_q u
+    a = a0 + alpha0 z x R d - omega0^2 R d + 2 omega0 z x R d_q u + R (d_q w + u' d_qq u)
+"""
+
+from typing import Any
+
+import sympy as sp
+
+from statics.recursion import Reach, Step, far_pose, name_forces, placed, reach_of, residual_step, turn_frame, turned
+from statics.segment import symbol
+from statics.trace import Trace
+from statics.virtual_work import SceneForces
+
+ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
+POWERS = ("input_power", "dissipated_power")
+
+
+def _far_velocity(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    near = sp.Matrix([symbol("near_velocity_x"), symbol("near_velocity_y")])
+    spin = symbol("near_angular_velocity")
+    relative = trace.let("relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
+    far = trace.let("far_velocity", near + spin * turned(reach.whole) + relative)
+    far_spin = trace.let("far_angular_velocity", spin + forces.segment.bend_angle_rate)
+    carried = dict(zip(map(str, [*near, spin]), [(0.0, value) for value in [*far, far_spin]], strict=True))
+    return carried, dict(zip(forces.disk.rates, [*far, far_spin], strict=True))
+
+
+def _far_acceleration(
+    trace: Trace, forces: SceneForces, reach: Reach
+) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    near = sp.Matrix([symbol("near_acceleration_x"), symbol("near_acceleration_y")])
+    spin, spin_rate = symbol("near_angular_velocity"), symbol("near_angular_acceleration")
+    u, w = sp.Matrix(forces.segment.rates), sp.Matrix(forces.segment.accelerations)
+    relative = sp.Matrix([symbol("relative_velocity_0"), symbol("relative_velocity_1")])
+    curving = sp.zeros(2, 1)
+    for a, row in enumerate(reach.by_qq):
+        for b, second in enumerate(row):
+            curving += second * u[a] * u[b]
+    far = trace.let(
+        "far_acceleration",
+        near
+        + spin_rate * turned(reach.whole)
+        - spin**2 * reach.whole
+        + 2 * spin * turned(relative)
+        + reach.by_q * w
+        + curving,
+    )
+    far_spin_rate = trace.let("far_angular_acceleration", spin_rate + w[0])
+    carried = dict(zip(map(str, [*near, spin_rate]), [(0.0, value) for value in [*far, far_spin_rate]], strict=True))
+    return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
+
+
+def _both(forces: SceneForces, kind: str, account: str, at_disk: dict[sp.Symbol, Any]) -> Any:
+    on_segment, on_disk = getattr(forces.on_segment, kind), getattr(forces.on_disk, kind)
+    return on_segment.get(account, 0) + placed(on_disk.get(account, 0), at_disk)
+
+
+def motion_step(forces: SceneForces) -> Step:
+    """Outwards: geometry, velocities, accelerations, and all loads, inertia included."""
+    trace = Trace()
+    reach = reach_of(forces, trace)
+    frame = turn_frame(trace, forces)
+    pose, at_disk = far_pose(trace, forces, reach)
+    motion, moving = _far_velocity(trace, forces, reach)
+    push, pushed = _far_acceleration(trace, forces, reach)
+    at_disk |= moving | pushed
+    name_forces(trace, forces, at_disk)
+    powers = {name: trace.let(f"added_{name}", _both(forces, "powers", name, at_disk)) for name in POWERS}
+    return Step(
+        "motion_step",
+        "Outwards: reach, velocity, acceleration, loads; power in and power dissipated.",
+        ("q", "u", "w", "tension", "segments", "disks", "chain"),
+        trace,
+        results={name: (0.0, symbol(name) + added) for name, added in powers.items()},
+        carried=frame | pose | motion | push,
+    )
+
+
+def motion_tangent_step(forces: SceneForces) -> Step:
+    """The derivative of ``motion_step`` along a change of coordinates and rates."""
+    step = motion_step(forces)
+    moving = [*forces.segment.coordinates, *forces.segment.rates, *map(symbol, step.carried)]
+    trace, change = step.trace.tangent({s: symbol(f"{s}_change") for s in moving})
+    changes = {
+        f"{name}_change": (0.0, trace.change_of(value, change)) for name, (_, value) in step.carried.items()
+    }
+    return Step(
+        "motion_tangent_step",
+        "Derivative of motion_step along q_change, u_change.",
+        (*step.arrays, "q_change", "u_change"),
+        trace,
+        results={
+            f"{name}_change": (0.0, symbol(f"{name}_change") + trace.change_of(value - symbol(name), change))
+            for name, (_, value) in step.results.items()
+        },
+        carried=step.carried | changes,
+    )
+
+
+def residual_tangent_step(forces: SceneForces) -> Step:
+    """The derivative of ``residual_step`` along what ``motion_tangent_step`` left."""
+    step, motion = residual_step(forces), motion_tangent_step(forces)
+    known = {s for symbols, _ in motion.trace.lines for s in symbols}
+    inputs = set().union(*(value.free_symbols for _, value in step.trace.lines)) | set().union(
+        *(sp.sympify(value).free_symbols for value in (*step.stores["residual"], *(v for _, v in step.carried.values())))
+    )
+    direction = {s: symbol(f"{s}_change") for s in inputs if symbol(f"{s}_change") in known}
+    direction |= {symbol(name): symbol(f"{name}_change") for name in step.carried}
+    trace, change = step.trace.tangent(direction)
+    return Step(
+        "residual_tangent_step",
+        "Derivative of residual_step along what motion_tangent_step left.",
+        ("disks", "chain", "residual_change"),
+        trace,
+        carried=step.carried
+        | {f"{name}_change": (0.0, trace.change_of(value, change)) for name, (_, value) in step.carried.items()},
+        stores={"residual_change": [trace.change_of(value, change) for value in step.stores["residual"]]},
+    )
+
+
+def observe_motion_step(forces: SceneForces) -> Step:
+    """Outwards: poses and velocities of the disks, energies and powers."""
+    trace = Trace()
+    reach = reach_of(forces, trace)
+    frame = turn_frame(trace, forces)
+    pose, at_disk = far_pose(trace, forces, reach)
+    motion, moving = _far_velocity(trace, forces, reach)
+    booked = {name: _both(forces, "energies", name, at_disk | moving) for name in ENERGIES}
+    booked |= {name: _both(forces, "powers", name, at_disk | moving) for name in POWERS}
+    return Step(
+        "observe_step",
+        "Outwards: poses and velocities of the disks, energies and powers.",
+        ("q", "u", "tension", "segments", "disks", "pose", "velocity"),
+        trace,
+        results={name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in booked.items()},
+        carried=frame | pose | motion,
+        stores={
+            "pose": [at_disk[coordinate] for coordinate in forces.disk.coordinates],
+            "velocity": [moving[rate] for rate in forces.disk.rates],
+        },
+    )

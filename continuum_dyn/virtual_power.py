@@ -1,0 +1,63 @@
+"""The same load-displacement pairs by virtual power: Kane's method.
+
+    Q_i = sum_j P_j . dr'_j/du_i
+
+r' is the time derivative of the displacement and dr'/du_i its partial velocity. Generalized inertia
+forces are pairs like any other, so motion is Q_i = 0 (Kane and Levinson 1985, sec. 6.1).
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import sympy as sp
+
+from statics.effects import Effect, Pair
+from statics.scene import Scene
+from statics.segment import DiskSymbols, SegmentSymbols
+from statics.virtual_work import Forces, SceneForces, by_account, collect, dot, generalized_force, potential
+
+
+def velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol]) -> Any:
+    """Time derivative of a displacement by the chain rule."""
+    if isinstance(displacement, Sequence):
+        return tuple(velocity(component, coordinates, rates) for component in displacement)
+    return sum(sp.diff(displacement, q) * u for q, u in zip(coordinates, rates, strict=True))
+
+
+def partial_velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol], i: int) -> Any:
+    """dr'/du_i, with the shape of the displacement."""
+    moving = velocity(displacement, coordinates, rates)
+    if isinstance(moving, Sequence):
+        return tuple(sp.diff(component, rates[i]) for component in moving)
+    return sp.diff(moving, rates[i])
+
+
+def derive_dynamics(scene: Scene) -> SceneForces:
+    """Forces, energies and powers of all effects of the scene."""
+    segment, disk = SegmentSymbols(scene.coordinates, scene.cables), DiskSymbols()
+    return SceneForces(
+        segment,
+        disk,
+        _in_motion(collect(scene.effects, "segment", segment), segment),
+        _in_motion(collect(scene.effects, "disk", disk), disk),
+    )
+
+
+def _in_motion(groups: list[tuple[Effect, list[Pair]]], at: SegmentSymbols | DiskSymbols) -> Forces:
+    pairs = [pair for _, group in groups for pair in group]
+    force = generalized_force(
+        pairs, lambda r, i: partial_velocity(r, at.coordinates, at.rates, i), at.coordinates
+    )
+    mass = -force.jacobian(at.accelerations)
+    energies = by_account(
+        [group for group in groups if group[0].account in ("elastic_energy", "gravity_energy")],
+        lambda pair: potential(pair, at.coordinates),
+    )
+    energies["kinetic_energy"] = (sp.Matrix([at.rates]) * mass * sp.Matrix(at.rates))[0] / 2
+    powers = by_account(
+        [group for group in groups if group[0].account in ("input_power", "dissipated_power")],
+        lambda pair: dot(pair.load, velocity(pair.displacement, at.coordinates, at.rates)),
+    )
+    if "dissipated_power" in powers:
+        powers["dissipated_power"] *= -1
+    return Forces(force, mass, -force.jacobian(at.rates), -force.jacobian(at.coordinates), energies, powers)

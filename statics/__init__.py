@@ -1,0 +1,30 @@
+"""Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
+
+from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable
+from statics.effects import Bending, Cables, DiskLoad, DiskLoads, Extension, Gravity
+from statics.effects.cables import disk_loads
+from statics.equilibria import Equilibrium, StaticSolver, equilibrium, tension_ramp
+from statics.errors import ContinuumError, InputError
+from statics.outcome import Outcome
+from statics.scene import Scene
+
+__all__ = [
+    "RONE2012_HOLE_OFFSET",
+    "Arm",
+    "Bending",
+    "Cable",
+    "Cables",
+    "ContinuumError",
+    "DiskLoad",
+    "DiskLoads",
+    "Equilibrium",
+    "Extension",
+    "Gravity",
+    "InputError",
+    "Outcome",
+    "Scene",
+    "StaticSolver",
+    "disk_loads",
+    "equilibrium",
+    "tension_ramp",
+]

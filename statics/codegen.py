@@ -1,0 +1,139 @@
+"""Generated kernels: written once for each structure of a scene, kept in the user's cache, loaded.
+
+Structure is what changes the equations: the effects, the coordinates of a segment, the number of
+cables. Numbers are not, so a changed number never recompiles; a changed source file always does. A
+warm start finds its kernel by a hash and imports neither sympy nor the derivation.
+"""
+
+import hashlib
+import importlib.util
+import os
+import platform
+import stat
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from platformdirs import user_cache_path
+
+from statics.errors import KernelCacheError
+from statics.scene import Scene
+
+_HERE = Path(__file__).parent
+DERIVATION = tuple(
+    _HERE / f"{stem}.py"
+    for stem in ("sigma", "segment", "trace", "virtual_work", "recursion", "compose", "codegen", "chain")
+)
+"""The sources that every kernel is made from."""
+
+_loaded: dict[str, ModuleType] = {}
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How a kind of kernel is made: ``write(scene)`` returns its text; ``sources`` are what it depends on."""
+
+    kind: str
+    write: Callable[[Scene], str]
+    sources: tuple[Path, ...]
+
+
+def load(scene: Scene, recipe: Recipe) -> Any:
+    """The compiled kernel module for the scene's structure.
+
+    Raises ``KernelCacheError`` if the cache folder cannot be used safely.
+    """
+    key = kernel_key(scene, recipe)
+    if key not in _loaded:
+        _loaded[key] = _import(f"{recipe.kind}_{key}", _kept_text(scene, recipe, key))
+    return _loaded[key]
+
+
+def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
+    """The same functions as plain Python, for tests and for reading along in a debugger."""
+    text = recipe.write(scene)
+    text = text.replace("from numba import njit\n", "")
+    text = text.replace('compiled = njit(cache=True, error_model="numpy", nogil=True)', "compiled = lambda f: f")
+    module = ModuleType(f"interpreted_{recipe.kind}")
+    exec(compile(text, module.__name__, "exec"), module.__dict__)
+    return module
+
+
+def kernel_key(scene: Scene, recipe: Recipe) -> str:
+    """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
+    digest = hashlib.sha256()
+    structure = (recipe.kind, scene.coordinates, scene.cables, [effect.name for effect in scene.effects])
+    versions = [platform.python_version(), *(version(name) for name in ("numba", "numpy", "sympy"))]
+    digest.update(repr((structure, versions)).encode())
+    effects = (sys.modules[type(effect).__module__].__file__ for effect in scene.effects)
+    for source in (*recipe.sources, *(Path(file) for file in effects if file)):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:24]
+
+
+def kernel_folder() -> Path:
+    """Folder of the generated kernels: ``CONTINUUM_DYN_CACHE``, or the user's own cache folder.
+
+    Raises ``KernelCacheError`` where others could write to it: kernels are code.
+    """
+    named = os.environ.get("CONTINUUM_DYN_CACHE")
+    folder = Path(named) if named else user_cache_path("continuum-dyn") / "kernels"
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        status = folder.stat()
+    except OSError as error:
+        raise KernelCacheError(
+            f"cannot make the folder for generated kernels, {folder}: {error.strerror}. "
+            "Name another with the environment variable CONTINUUM_DYN_CACHE."
+        ) from error
+    if os.name == "posix" and (status.st_uid != os.getuid() or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)):
+        raise KernelCacheError(
+            f"the folder for generated kernels, {folder}, may be written to by others, and kernels are code. "
+            f"Try: chmod 700 {folder}, or name another with the environment variable CONTINUUM_DYN_CACHE."
+        )
+    return folder
+
+
+def _kept_text(scene: Scene, recipe: Recipe, key: str) -> Path:
+    """The kernel's file; made, or made again if it is not what was once written."""
+    path = kernel_folder() / f"{recipe.kind}_{key}.py"
+    if not _is_whole(path):
+        _write_atomically(path, _sealed(recipe.write(scene)))
+    return path
+
+
+def _sealed(text: str) -> str:
+    return f"# sha256 of what follows: {hashlib.sha256(text.encode()).hexdigest()}\n{text}"
+
+
+def _is_whole(path: Path) -> bool:
+    try:
+        sealed = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return False
+    return sealed == _sealed(sealed.partition("\n")[2])
+
+
+def _write_atomically(path: Path, text: str) -> None:
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(name, path)
+    except OSError as error:
+        raise KernelCacheError(f"cannot write the generated kernel {path}: {error.strerror}.") from error
+
+
+def _import(name: str, path: Path) -> ModuleType:
+    specification = importlib.util.spec_from_file_location(name, path)
+    if specification is None or specification.loader is None:
+        raise KernelCacheError(f"cannot import the generated kernel {path}.")
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[name] = module
+    specification.loader.exec_module(module)
+    return module

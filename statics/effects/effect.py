@@ -1,0 +1,46 @@
+"""What an effect is: the shape that every file beside this one has."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal, NamedTuple, Protocol
+
+import numpy as np
+
+from statics.arm import Arm
+
+Place = Literal["segment", "disk"]
+Account = Literal["elastic_energy", "gravity_energy", "kinetic_energy", "input_power", "dissipated_power"]
+
+
+class Pair(NamedTuple):
+    """A load P and the displacement r it works along; scalars, or vectors as tuples (Eq. 1)."""
+
+    load: Any
+    displacement: Any
+
+
+class Effect(Protocol):
+    """A frozen dataclass of parameters with one verb: ``pairs``.
+
+    ``name`` is its key in scenario files; ``place`` says where the pairs stand (on each segment or on
+    each disk); ``account`` in which line of the power ledger its work is booked; ``acts_at_rest`` is
+    False for what exists in motion only; ``coordinates`` are those that it adds to a segment;
+    ``arm_quantities`` are the numbers of the arm that it needs, ``quantities`` its own (glossary
+    names); ``source`` is where it comes from.
+    """
+
+    name: ClassVar[str]
+    place: ClassVar[Place]
+    account: ClassVar[Account]
+    acts_at_rest: ClassVar[bool]
+    coordinates: ClassVar[tuple[str, ...]]
+    arm_quantities: ClassVar[tuple[str, ...]]
+    quantities: ClassVar[tuple[str, ...]]
+    source: ClassVar[str]
+
+    def pairs(self, at: Any) -> list[Pair]:
+        """The pairs at one segment or one disk, by arithmetic on the symbols handed in."""
+        ...
+
+    def columns(self, arm: Arm) -> Mapping[str, np.ndarray | float]:
+        """Values of ``quantities``: scalars, or one for each segment or disk."""
+        ...

@@ -1,0 +1,33 @@
+"""Weight of the disks, in any direction of the plane."""
+
+from typing import Any, ClassVar
+
+from pydantic.dataclasses import dataclass
+
+from statics.arm import Arm
+from statics.checked import STRICT, Vector
+from statics.effects.effect import Account, Pair, Place
+
+
+@dataclass(frozen=True, config=STRICT)
+class Gravity:
+    """F = m g along each disk's position; ``acceleration`` is g, m/s^2."""
+
+    acceleration: Vector = (0.0, -9.81)
+
+    name: ClassVar[str] = "gravity"
+    place: ClassVar[Place] = "disk"
+    account: ClassVar[Account] = "gravity_energy"
+    acts_at_rest: ClassVar[bool] = True
+    coordinates: ClassVar[tuple[str, ...]] = ()
+    arm_quantities: ClassVar[tuple[str, ...]] = ("disk_mass",)
+    quantities: ClassVar[tuple[str, ...]] = ("gravity_x", "gravity_y")
+    source: ClassVar[str] = "Rone 2012, Eq. 19"
+
+    def pairs(self, at: Any) -> list[Pair]:
+        """One pair: weight, position of the disk."""
+        return [Pair((at.disk_mass * at.gravity_x, at.disk_mass * at.gravity_y), at.position)]
+
+    def columns(self, arm: Arm) -> dict[str, float]:
+        """Components of g."""
+        return {"gravity_x": self.acceleration[0], "gravity_y": self.acceleration[1]}

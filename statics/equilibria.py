@@ -1,0 +1,140 @@
+"""Equilibria of a scene, and ramps of them.
+
+What is returned as an equilibrium is one: residual at rounding level. Where there is none, or where it is
+not stable, the outcome says so.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from statics import codegen, newton
+from statics.arm import Arm
+from statics.outcome import Outcome
+from statics.scene import Scene
+from statics.statics_kernel import RECIPE
+
+MAX_ITERATIONS = 200
+
+_OUTCOMES = {
+    newton.STABLE: Outcome.COMPLETED,
+    newton.UNSTABLE: Outcome.UNSTABLE_EQUILIBRIUM,
+    newton.LIMIT: Outcome.GEOMETRY_LIMIT,
+    newton.NOT_FOUND: Outcome.NO_EQUILIBRIUM,
+}
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """An arm at rest under ``tension``, or the search for it where ``found`` is False.
+
+    Arrays have shape (disks,), ``tension`` (cables,), ``elongation`` is None in a scene without
+    extension; SI units. ``residual`` is the largest unbalanced generalized force, N or N m.
+    """
+
+    outcome: Outcome
+    tension: np.ndarray
+    bend_angle: np.ndarray
+    elongation: np.ndarray | None
+    curvature: np.ndarray
+    length: np.ndarray
+    disk_x: np.ndarray
+    disk_y: np.ndarray
+    disk_theta: np.ndarray
+    elastic_energy: float
+    gravity_energy: float
+    unstable_directions: int
+    iterations: int
+    residual: float
+
+    @property
+    def found(self) -> bool:
+        """Whether this is an equilibrium, stable or not."""
+        return self.outcome in (Outcome.COMPLETED, Outcome.UNSTABLE_EQUILIBRIUM)
+
+    @property
+    def stable(self) -> bool:
+        """Whether every small disturbance raises the energy."""
+        return self.outcome is Outcome.COMPLETED
+
+    @property
+    def tip(self) -> tuple[float, float, float]:
+        """x, y (m) and theta (rad) of the last disk."""
+        return float(self.disk_x[-1]), float(self.disk_y[-1]), float(self.disk_theta[-1])
+
+    @property
+    def coordinates(self) -> np.ndarray:
+        """The generalized coordinates, shape (disks, 1 or 2): bend angle, and elongation if there is one."""
+        parts = [self.bend_angle] if self.elongation is None else [self.bend_angle, self.elongation]
+        return np.column_stack(parts)
+
+
+class StaticSolver:
+    """The kernel and the numbers of one scene, for many equilibria in a row."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene.at_rest
+        self.kernel = codegen.load(self.scene, RECIPE)
+        self.segments = self.scene.table("segment", self.kernel.SEGMENT_COLUMNS)
+        self.disks = self.scene.table("disk", self.kernel.DISK_COLUMNS)
+
+    def solve(self, tension: np.ndarray, start: np.ndarray | None = None) -> Equilibrium:
+        """The equilibrium that is reached from ``start``, shape (disks, dofs); from straight by default."""
+        arm = self.scene.arm
+        q = np.zeros((arm.disks, len(self.scene.coordinates))) if start is None else start.copy()
+        ended, iterations, unstable = self.kernel.find_equilibrium(
+            q, tension, self.segments, self.disks, arm.rest_length, MAX_ITERATIONS
+        )
+        pose = np.empty((arm.disks, 3))
+        elastic, gravity, residual = self.kernel.examine(q, tension, self.segments, self.disks, pose)
+        elongation = q[:, 1] if q.shape[1] == 2 else None
+        return Equilibrium(
+            outcome=_OUTCOMES[ended],
+            tension=tension,
+            bend_angle=q[:, 0],
+            elongation=elongation,
+            **shape_of(arm, q[:, 0], elongation),
+            disk_x=pose[:, 0],
+            disk_y=pose[:, 1],
+            disk_theta=pose[:, 2],
+            elastic_energy=elastic,
+            gravity_energy=gravity,
+            unstable_directions=unstable,
+            iterations=iterations,
+            residual=residual,
+        )
+
+
+def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, np.ndarray]:
+    """Curvature (1/m) and length (m) of segments, the paper's k and L, from their coordinates."""
+    length = arm.rest_length + (np.zeros_like(bend_angle) if elongation is None else elongation)
+    return {"curvature": bend_angle / length, "length": length}
+
+
+def equilibrium(scene: Scene, tension: object = None, start: Equilibrium | None = None) -> Equilibrium:
+    """The arm at rest under these tensions, shape (cables,), N; a number will do for a single cable.
+
+    Newton's method from ``start``, or from the straight arm; effects that exist in motion only play no
+    part. Look at ``outcome``: a stable equilibrium is ``completed``. Raises ``InputError`` for tensions
+    that do not fit. Rone 2012, Eq. 5.
+    """
+    values = scene.check_tension(tension)
+    return StaticSolver(scene).solve(values, None if start is None else start.coordinates)
+
+
+def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
+    """Equilibria under one set of tensions after another, each found from the one before it.
+
+    Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
+    starts from the last one that was. Raises ``InputError`` for tensions that do not fit.
+    """
+    checked = [scene.check_tension(tension) for tension in tensions]
+    solver = StaticSolver(scene)
+    points: list[Equilibrium] = []
+    start: np.ndarray | None = None
+    for tension in checked:
+        points.append(solver.solve(tension, start))
+        if points[-1].found:
+            start = points[-1].coordinates
+    return points

@@ -1,0 +1,192 @@
+"""Newton's method on the chain that ends in a stable equilibrium: plain Python, composed into kernels.
+
+The potential energy must fall (Armijo); pivot blocks are made positive, so that every step descends;
+at a saddle the way out is the direction of negative curvature that the elimination knows. A trial
+beyond a geometric limit counts as infinitely high.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
+    from statics.generated import CHAIN_COLUMNS, OBSERVE_START, PIVOT_COLUMNS, POSE_START, observe_step, pose_step
+
+STABLE, UNSTABLE, LIMIT, NOT_FOUND = 0, 1, 2, 3
+
+
+def pose_sweep(
+    q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, chain: np.ndarray
+) -> tuple[float, float, float]:
+    """Outwards, at rest: potential energy, the sum of its parts' sizes, and the clearance."""
+    carried = POSE_START
+    for i in range(q.shape[0]):
+        carried = pose_step(i, carried, q, tension, segments, disks, chain)
+    return carried[0], carried[1], carried[2]
+
+
+def positive_inverse_1(a: float, size: float) -> tuple[float, float, float]:
+    """Inverse of a pivot's absolute value; the torque scale so far; 1 if the pivot was negative."""
+    size = max(size, abs(a))
+    return 1.0 / max(abs(a), 1e-9 * size, 1e-30), size, 1.0 if a < 0.0 else 0.0
+
+
+def positive_inverse_2(
+    a: float, b: float, c: float, unit: float, size: float
+) -> tuple[float, float, float, float, float]:
+    """Inverse of the pivot [[a, b], [b, c]] with its eigenvalues made positive.
+
+    The second coordinate is measured in ``unit``, so that eigenvalues compare. Returns the three entries
+    of the inverse, the torque scale so far, and the number of negative eigenvalues.
+    """
+    b, c = b * unit, c * unit * unit
+    size = max(size, abs(a))
+    floor = 1e-9 * size + 1e-30
+    determinant = a * c - b * b
+    if a + c > 0.0 and determinant > floor * (a + c):
+        return c / determinant, -b * unit / determinant, a * unit * unit / determinant, size, 0.0
+    mean, radius = 0.5 * (a + c), math.hypot(0.5 * (a - c), b)
+    low, high = mean - radius, mean + radius
+    turn = 0.5 * math.atan2(2.0 * b, a - c)
+    cosine, sine = math.cos(turn), math.sin(turn)
+    of_low, of_high = 1.0 / max(abs(low), floor), 1.0 / max(abs(high), floor)
+    return (
+        cosine * cosine * of_high + sine * sine * of_low,
+        cosine * sine * (of_high - of_low) * unit,
+        (sine * sine * of_high + cosine * cosine * of_low) * unit * unit,
+        size,
+        (1.0 if low < 0.0 else 0.0) + (1.0 if high < 0.0 else 0.0),
+    )
+
+
+def measure(change: np.ndarray, rest_length: float) -> tuple[float, float]:
+    """Largest single change (rad, or elongation over L0), and largest change of any disk's angle."""
+    single, angle, turned = 0.0, 0.0, 0.0
+    for i in range(change.shape[0]):
+        angle += change[i, 0]
+        turned = max(turned, abs(angle))
+        single = max(single, abs(change[i, 0]))
+        if change.shape[1] == 2:
+            single = max(single, abs(change[i, 1]) / rest_length)
+    return single, max(single, turned)
+
+
+def inner(first: np.ndarray, second: np.ndarray) -> float:
+    """Scalar product of two arrays of one row for each segment."""
+    total = 0.0
+    for i in range(first.shape[0]):
+        for k in range(first.shape[1]):
+            total += first[i, k] * second[i, k]
+    return total
+
+
+def advance(q: np.ndarray, factor: float, change: np.ndarray, trial: np.ndarray) -> None:
+    """trial = q + factor * change."""
+    for i in range(q.shape[0]):
+        for k in range(q.shape[1]):
+            trial[i, k] = q[i, k] + factor * change[i, k]
+
+
+def saddle_direction(
+    unit: float, chain: np.ndarray, pivots: np.ndarray, descent: np.ndarray, change: np.ndarray
+) -> float:
+    """Into ``change`` a direction of negative curvature, at most 0.1 rad; returns its curvature.
+
+    The negative pivot nearest to the tip gives its own eigenvector; substitution gives what follows.
+    """
+    descent[:] = 0.0
+    curvature = 0.0
+    for i in range(descent.shape[0] - 1, -1, -1):
+        if descent.shape[1] == 1:
+            if pivots[i, 0] < 0.0:
+                descent[i, 0], curvature = 1.0, pivots[i, 0]
+                break
+        else:
+            a, b, c = pivots[i, 0], pivots[i, 1] * unit, pivots[i, 2] * unit * unit
+            low = 0.5 * (a + c) - math.hypot(0.5 * (a - c), b)
+            if low < 0.0:
+                turn = 0.5 * math.atan2(2.0 * b, a - c)
+                descent[i, 0], descent[i, 1] = -math.sin(turn), math.cos(turn) * unit
+                curvature = low
+                break
+    substitute_sweep(chain, descent, change)
+    shrink = 0.1 / max(measure(change, unit)[1], 1e-30)
+    for i in range(change.shape[0]):
+        for k in range(change.shape[1]):
+            change[i, k] *= shrink
+    return curvature * shrink * shrink
+
+
+def find_equilibrium(
+    q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, unit: float, most: int
+) -> tuple[int, int, int]:
+    """Move ``q``, shape (n, dofs), to an equilibrium; ``unit`` is the length elongations compare with.
+
+    Returns how it ended (STABLE, UNSTABLE, LIMIT, NOT_FOUND), the iterations (at most ``most``), and the
+    number of unstable directions.
+    """
+    n, dofs = q.shape
+    chain = np.empty((n, CHAIN_COLUMNS))
+    residual, descent, change, trial = np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
+    pivots = np.empty((n, PIVOT_COLUMNS))
+    potential, scale, clearance = pose_sweep(q, tension, segments, disks, chain)
+    for iteration in range(1, most + 1):
+        residual_sweep(disks, chain, residual)
+        negative = int(eliminate_sweep(segments, disks, chain, residual, descent, pivots))
+        substitute_sweep(chain, descent, change)
+        single, turned = measure(change, unit)
+        slope, curvature = inner(residual, change), 0.0
+        if single < 1e-8:
+            if negative == 0:
+                advance(q, 1.0, change, q)
+                return STABLE, iteration, 0
+            curvature = saddle_direction(unit, chain, pivots, descent, change)
+            slope = inner(residual, change)
+            if slope > 0.0:
+                advance(change, -2.0, change, change)
+                slope = -slope
+            turned = 0.0
+        factor = min(1.0, 1.0 / max(turned, 1e-30))
+        rounding = curvature == 0.0 and slope > -1e-11 * scale
+        lower, lower_scale, clearance = potential, scale, 0.0
+        for _halving in range(60):
+            advance(q, factor, change, trial)
+            lower, lower_scale, clearance = pose_sweep(trial, tension, segments, disks, chain)
+            promised = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
+            if clearance > 0.0 and (rounding or lower <= potential + promised):
+                break
+            factor *= 0.5
+            clearance = 0.0
+        if clearance <= 0.0:
+            return (UNSTABLE, iteration, negative) if curvature < 0.0 else (NOT_FOUND, iteration, negative)
+        while negative > 0 and factor * turned < 1.0 and not rounding and factor < 1e6:
+            advance(q, 2.0 * factor, change, trial)
+            further, further_scale, clear = pose_sweep(trial, tension, segments, disks, chain)
+            if clear <= 0.0 or further >= lower:
+                break
+            factor *= 2.0
+            lower, lower_scale, clearance = further, further_scale, clear
+        if negative > 0:
+            advance(q, factor, change, trial)
+            lower, lower_scale, clearance = pose_sweep(trial, tension, segments, disks, chain)
+        advance(trial, 0.0, change, q)
+        potential, scale = lower, lower_scale
+        if clearance < 1e-6:
+            return LIMIT, iteration, negative
+    return NOT_FOUND, most, negative
+
+
+def examine(
+    q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, pose: np.ndarray
+) -> tuple[float, float, float]:
+    """Poses of the disks into ``pose``, shape (n, 3); returns elastic and gravity energy and the largest
+    residual, N or N m."""
+    chain, residual = np.empty((q.shape[0], CHAIN_COLUMNS)), np.empty_like(q)
+    pose_sweep(q, tension, segments, disks, chain)
+    residual_sweep(disks, chain, residual)
+    carried = OBSERVE_START
+    for i in range(q.shape[0]):
+        carried = observe_step(i, carried, q, segments, disks, pose)
+    return carried[0], carried[1], np.abs(residual).max()

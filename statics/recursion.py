@@ -1,0 +1,342 @@
+"""One step of each sweep along the chain, as matrix algebra in sympy.
+
+Outwards the pose, velocity and acceleration of a disk follow from those of the disk before
+(Rone 2012, Eq. 10 and its derivatives); inwards wrenches add up (recursive Newton-Euler) and 3x3 blocks
+are eliminated (articulated bodies). With R the rotation of the segment's near disk and d(q) its far
+end seen from there,
+
+    p = p0 + R d,   dp = X dp0 + S dq,   S = [R d_q; phi_q],   X: dp0 plus dtheta0 z x R d
+
+The chain's second derivatives act through the reaction f = -sum P beyond the segment:
+
+    f . R d_qq,   f . z x R d_q,   -f . R d
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from statics.segment import symbol
+from statics.trace import Trace
+from statics.virtual_work import SceneForces
+
+
+@dataclass(frozen=True)
+class Step:
+    """What one segment contributes to a sweep.
+
+    ``results`` and ``carried`` map a name to its value before the first segment and after this one;
+    results are what the sweep returns. ``arrays`` are the step's arguments, ``stores`` those that it
+    writes, one column for each expression.
+    """
+
+    name: str
+    doc: str
+    arrays: tuple[str, ...]
+    trace: Trace
+    results: dict[str, tuple[float, Any]] = field(default_factory=dict)
+    carried: dict[str, tuple[float, Any]] = field(default_factory=dict)
+    stores: dict[str, list[Any]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """A segment's far end seen from its near disk, in base axes, with its derivatives by q."""
+
+    whole: sp.Matrix  # (2, 1)
+    by_q: sp.Matrix  # (2, dofs)
+    by_qq: list[list[sp.Matrix]]  # (dofs, dofs) of (2, 1)
+    turn_by_q: sp.Matrix  # (1, dofs)
+
+    @property
+    def partials(self) -> sp.Matrix:
+        """S, shape (3, dofs): the far disk's pose by the segment's coordinates."""
+        return self.by_q.col_join(self.turn_by_q)
+
+    @property
+    def transition(self) -> sp.Matrix:
+        """X, shape (3, 3): the far disk's pose by the near disk's."""
+        across = turned(self.whole)
+        return sp.Matrix([[1, 0, across[0]], [0, 1, across[1]], [0, 0, 1]])
+
+
+def turned(vector: sp.Matrix) -> sp.Matrix:
+    """z x vector, in the plane."""
+    return sp.Matrix([-vector[1], vector[0]])
+
+
+def reach_of(forces: SceneForces, trace: Trace | None = None) -> Reach:
+    """The segment's reach: derived into ``trace``, or by name only where another step has derived it."""
+    segment = forces.segment
+    dofs = range(len(segment.coordinates))
+    rotation = sp.Matrix([[symbol("cosine"), -symbol("sine")], [symbol("sine"), symbol("cosine")]])
+
+    def named(name: str, local: sp.Matrix) -> sp.Matrix:
+        if trace is not None:
+            return trace.let(name, rotation * trace.let(f"local_{name}", local))
+        return sp.Matrix([0 if entry == 0 else symbol(f"{name}_{row}") for row, entry in enumerate(local)])
+
+    d = segment.displacement
+    d_q = [d.diff(q) for q in segment.coordinates]
+    second = {
+        (a, b): named(f"reach_{a}{b}", d_q[a].diff(segment.coordinates[b])) for a in dofs for b in dofs if a <= b
+    }
+    return Reach(
+        named("reach", d),
+        sp.Matrix.hstack(*[named(f"reach_q{a}", d_q[a]) for a in dofs]),
+        [[second[min(a, b), max(a, b)] for b in dofs] for a in dofs],
+        sp.Matrix([[1, *[0 for _ in segment.coordinates[1:]]]]),
+    )
+
+
+def turn_frame(trace: Trace, forces: SceneForces) -> dict[str, tuple[float, Any]]:
+    """Cosine and sine of the far disk's angle by angle addition, kept on the unit circle."""
+    d, length = forces.segment.displacement, forces.segment.length
+    chord = trace.let("half_chord", (d / length).applyfunc(sp.cancel))
+    half = forces.segment.half_angle
+    turn_cos = trace.let("turn_cosine", 1 - 2 * half * chord[1])
+    turn_sin = trace.let("turn_sine", 2 * half * chord[0])
+    cosine, sine = symbol("cosine"), symbol("sine")
+    far_cos = trace.let("far_cosine", cosine * turn_cos - sine * turn_sin)
+    far_sin = trace.let("far_sine", sine * turn_cos + cosine * turn_sin)
+    onto_circle = trace.let("onto_circle", (3 - far_cos**2 - far_sin**2) / 2)
+    return {"cosine": (1.0, far_cos * onto_circle), "sine": (0.0, far_sin * onto_circle)}
+
+
+def far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    """Pose of the far disk: what is carried on, and what the disk's symbols stand for."""
+    x, y, theta = (symbol(f"near_{name}") for name in ("x", "y", "theta"))
+    far_x = trace.let("far_x", x + reach.whole[0])
+    far_y = trace.let("far_y", y + reach.whole[1])
+    far_theta = trace.let("far_theta", theta + forces.segment.bend_angle)
+    carried = {"near_x": (0.0, far_x), "near_y": (0.0, far_y), "near_theta": (0.0, far_theta)}
+    at_disk = dict(zip(forces.disk.coordinates, (far_x, far_y, far_theta), strict=True))
+    return carried, at_disk
+
+
+def _smallest(trace: Trace, forces: SceneForces) -> Any:
+    """Smallest so far of length and hole-to-hole lengths over L0; cables that do not pass are left out."""
+    rest = symbol("rest_length")
+    ratios = [
+        sp.Max(cable.length / rest, 1 - symbol(f"cable_passes_{number}"))
+        for number, cable in enumerate(forces.segment.cables, start=1)
+    ]
+    if forces.segment.elongation != 0:
+        ratios.append(forces.segment.length / rest)
+    return sp.Min(symbol("clearance"), *(trace.let(f"ratio_{k}", ratio) for k, ratio in enumerate(ratios)))
+
+
+def clearance_step(forces: SceneForces) -> Step:
+    """How far the arm is from a geometric limit."""
+    trace = Trace()
+    smallest = _smallest(trace, forces)
+    return Step(
+        "clearance_step",
+        "Smallest length or hole-to-hole length over L0.",
+        ("q", "segments"),
+        trace,
+        results={"clearance": (1.0, smallest)},
+    )
+
+
+def pose_step(forces: SceneForces) -> Step:
+    """Outwards, at rest: geometry, loads and potential energy."""
+    trace = Trace()
+    reach = reach_of(forces, trace)
+    carried = turn_frame(trace, forces)
+    pose, at_disk = far_pose(trace, forces, reach)
+    name_forces(trace, forces, at_disk)
+    energy = trace.let("segment_potential", sum(forces.on_segment.energies.values()))
+    energy += trace.let("disk_potential", placed(sp.Add(*forces.on_disk.energies.values()), at_disk))
+    energy = trace.let("added_potential", energy)
+    smallest = _smallest(trace, forces)
+    return Step(
+        "pose_step",
+        "Outwards, at rest: reach, loads, potential energy, clearance.",
+        ("q", "tension", "segments", "disks", "chain"),
+        trace,
+        results={
+            "potential": (0.0, symbol("potential") + energy),
+            "potential_scale": (0.0, symbol("potential_scale") + sp.Abs(energy)),
+            "clearance": (1.0, smallest),
+        },
+        carried={**carried, **pose},
+    )
+
+
+def placed(expression: Any, at_disk: dict[sp.Symbol, Any]) -> Any:
+    """A disk's expression with the chain's names for its pose and motion."""
+    return expression.xreplace(at_disk) if hasattr(expression, "xreplace") else sp.sympify(expression)
+
+
+def name_forces(trace: Trace, forces: SceneForces, at_disk: dict[sp.Symbol, Any]) -> None:
+    """Name the generalized forces and their derivatives for the inward sweeps."""
+    trace.let("segment_force", forces.on_segment.force)
+    trace.symmetric("segment_stiffness", forces.on_segment.stiffness)
+    trace.let("disk_force", placed(forces.on_disk.force, at_disk))
+    for name in ("mass", "damping", "stiffness"):
+        trace.symmetric(f"disk_{name}", placed(getattr(forces.on_disk, name), at_disk))
+
+
+def _named(name: str, value: sp.Matrix) -> sp.Matrix:
+    """The names that ``Trace.let`` gave to a column in an earlier step; numbers and symbols as they are."""
+    return sp.Matrix(*value.shape, lambda r, c: value[r, c] if value[r, c].is_Atom else symbol(f"{name}_{r}"))
+
+
+def _symmetric_named(name: str, value: sp.Matrix) -> sp.Matrix:
+    """Likewise for ``Trace.symmetric``."""
+    upper = sp.Matrix(
+        *value.shape, lambda r, c: value[r, c] if value[r, c].is_Atom else symbol(f"{name}_{r}{c}")
+    )
+    return sp.Matrix(*value.shape, lambda r, c: upper[min(r, c), max(r, c)])
+
+
+def observe_step(forces: SceneForces) -> Step:
+    """Outwards, at rest: poses of the disks and the energies of the core and of the weight."""
+    trace = Trace()
+    reach = reach_of(forces, trace)
+    frame = turn_frame(trace, forces)
+    pose, at_disk = far_pose(trace, forces, reach)
+    energies = {
+        name: forces.on_segment.energies.get(name, 0) + placed(forces.on_disk.energies.get(name, 0), at_disk)
+        for name in ("elastic_energy", "gravity_energy")
+    }
+    return Step(
+        "observe_step",
+        "Outwards, at rest: poses of the disks, elastic and gravity energy.",
+        ("q", "segments", "disks", "pose"),
+        trace,
+        results={name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in energies.items()},
+        carried=frame | pose,
+        stores={"pose": [at_disk[coordinate] for coordinate in forces.disk.coordinates]},
+    )
+
+
+def residual_step(forces: SceneForces) -> Step:
+    """Inwards: reaction wrenches and the residual S^T (f, N) - Q (Eq. 5, with its sign turned)."""
+    trace = Trace()
+    reach = reach_of(forces)
+    carried = sp.Matrix([symbol(name) for name in ("force_x", "force_y", "torque")])
+    reaction = trace.let("reaction", carried - _named("disk_force", forces.on_disk.force))
+    residual = reach.partials.T * reaction - _named("segment_force", forces.on_segment.force)
+    at_near = reach.transition.T * reaction
+    return Step(
+        "residual_step",
+        "Inwards: reaction on the segment's far disk and the segment's residual.",
+        ("disks", "chain", "residual"),
+        trace,
+        carried={
+            "force_x": (0.0, at_near[0]),
+            "force_y": (0.0, at_near[1]),
+            "torque": (0.0, at_near[2]),
+        },
+        stores={"residual": list(residual)},
+    )
+
+
+@dataclass(frozen=True)
+class Weights:
+    """A Newton matrix: mass M + damping C + stiffness K, each times its weight."""
+
+    mass: Any
+    damping: Any
+    stiffness: Any
+
+
+STATIC = Weights(0, 0, 1)
+ACCELERATION = Weights(1, 0, 0)
+
+
+def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
+    """Inwards: eliminate one segment's coordinates from the chain's Newton system H dq = -residual."""
+    trace = Trace()
+    reach = reach_of(forces)
+    dofs = len(forces.segment.coordinates)
+    carried = sp.Matrix(3, 3, lambda r, c: symbol(f"carried_{min(r, c)}{max(r, c)}"))
+    load = sp.Matrix([symbol(f"carried_load_{r}") for r in range(3)])
+    S, X = reach.partials, reach.transition
+    V = trace.symmetric("V", carried + _weighted(weights, forces.on_disk, "disk"))
+    VS, VX = trace.let("VS", V * S), trace.let("VX", V * X)
+    A = S.T * VS + _weighted(weights, forces.on_segment, "segment")
+    C = VS.T * X
+    D = X.T * VX
+    if weights.stiffness != 0:
+        f = sp.Matrix([symbol("reaction_0"), symbol("reaction_1")])
+        A += weights.stiffness * sp.Matrix(dofs, dofs, lambda a, b: f.dot(reach.by_qq[a][b]))
+        for a in range(dofs):
+            C[a, 2] += weights.stiffness * f.dot(turned(reach.by_q[:, a]))
+        D[2, 2] -= weights.stiffness * f.dot(reach.whole)
+    A, C = trace.symmetric("A", A), trace.let("C", C)
+    b = trace.let("b", S.T * load - sp.Matrix([symbol(f"residual_{a}") for a in range(dofs)]))
+    inverse, results = _pivot_inverse(trace, A, weights)
+    gain = trace.let("gain", inverse * C)
+    descent = trace.let("descent", inverse * b)
+    next_load = X.T * load - C.T * descent
+    next_V = D - C.T * gain
+    return Step(
+        "eliminate_step",
+        "Inwards: one segment's coordinates eliminated; the rest goes to its near disk.",
+        ("segments", "disks", "chain", "residual", "descent", "pivots"),
+        trace,
+        results=results,
+        carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r in range(3) for c in range(r, 3)}
+        | {f"carried_load_{r}": (0.0, next_load[r]) for r in range(3)},
+        stores={"descent": list(descent)}
+        | ({"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]} if results else {}),
+    )
+
+
+def _weighted(weights: Weights, forces: Any, place: str) -> sp.Matrix:
+    return (
+        weights.mass * _symmetric_named(f"{place}_mass", forces.mass)
+        + weights.damping * _symmetric_named(f"{place}_damping", forces.damping)
+        + weights.stiffness * _symmetric_named(f"{place}_stiffness", forces.stiffness)
+    )
+
+
+def _pivot_inverse(trace: Trace, A: sp.Matrix, weights: Weights) -> tuple[sp.Matrix, dict[str, Any]]:
+    """The pivot's inverse: made positive where the matrix may be indefinite, plain where it is a mass."""
+    dofs = A.shape[0]
+    if weights.stiffness == 0:
+        return _plain_inverse(trace, A), {}
+    entries = [A[r, c] for r in range(dofs) for c in range(r, dofs)]
+    names = [f"inverse_{r}{c}" for r in range(dofs) for c in range(r, dofs)]
+    units = [symbol("rest_length")] if dofs == 2 else []
+    *inverse, pivot_scale, negative = trace.call(
+        f"positive_inverse_{dofs}", [*entries, *units, symbol("pivot_scale")], [*names, "pivot_size", "negative"]
+    )
+    by_name = dict(zip(names, inverse, strict=True))
+    matrix = sp.Matrix(dofs, dofs, lambda r, c: by_name[f"inverse_{min(r, c)}{max(r, c)}"])
+    return matrix, {
+        "negative_pivots": (0.0, symbol("negative_pivots") + negative),
+        "pivot_scale": (0.0, pivot_scale),
+    }
+
+
+def _plain_inverse(trace: Trace, A: sp.Matrix) -> sp.Matrix:
+    if A.shape[0] == 1:
+        return sp.Matrix([[trace.let("inverse_00", 1 / A[0, 0])]])
+    determinant = trace.let("determinant", A[0, 0] * A[1, 1] - A[0, 1] ** 2)
+    scaled = sp.Matrix([[A[1, 1], -A[0, 1]], [-A[0, 1], A[0, 0]]]) / determinant
+    return trace.symmetric("inverse", scaled)
+
+
+def substitute_step(forces: SceneForces) -> Step:
+    """Outwards: dq of one segment from the change of its near disk's pose."""
+    trace = Trace()
+    reach = reach_of(forces)
+    dofs = len(forces.segment.coordinates)
+    near = sp.Matrix([symbol(name) for name in ("shift_x", "shift_y", "shift_theta")])
+    gain = sp.Matrix(dofs, 3, lambda r, c: symbol(f"gain_{r}{c}"))
+    change = trace.let("change", sp.Matrix([symbol(f"descent_{a}") for a in range(dofs)]) - gain * near)
+    far = reach.transition * near + reach.partials * change
+    return Step(
+        "substitute_step",
+        "Outwards: the segment's part of the solution.",
+        ("chain", "descent", "change"),
+        trace,
+        carried={str(name): (0.0, value) for name, value in zip(near, far, strict=True)},
+        stores={"change": list(change)},
+    )

@@ -1,0 +1,84 @@
+"""A scene: an arm and the effects that it calls for."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from statics.arm import Arm
+from statics.effects import Effect
+from statics.errors import InputError
+
+
+@dataclass(frozen=True)
+class Scene:
+    """An arm and its effects, in an order that does not matter.
+
+    Raises ``InputError`` where an effect is given twice or needs a number that the arm does not have.
+    """
+
+    arm: Arm
+    effects: tuple[Effect, ...]
+
+    def __init__(self, arm: Arm, effects: Iterable[Effect]) -> None:
+        object.__setattr__(self, "arm", arm)
+        object.__setattr__(self, "effects", tuple(sorted(effects, key=lambda effect: effect.name)))
+        for name, count in Counter(effect.name for effect in self.effects).items():
+            if count > 1:
+                raise InputError(f"effect '{name}' is given {count} times. Give it once.")
+        for effect in self.effects:
+            self._check(effect)
+
+    def _check(self, effect: Effect) -> None:
+        for quantity in effect.arm_quantities:
+            if getattr(self.arm, quantity) in (None, ()):
+                raise InputError(
+                    f"effect '{effect.name}' needs the arm's {quantity}, which is not given. "
+                    f"Give {quantity}, or leave '{effect.name}' out."
+                )
+        effect.columns(self.arm)
+
+    @property
+    def at_rest(self) -> "Scene":
+        """The same scene with only those effects that act at rest."""
+        return Scene(self.arm, (effect for effect in self.effects if effect.acts_at_rest))
+
+    @cached_property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of one segment's coordinates: ``bend_angle``, and ``elongation`` if it can extend."""
+        return ("bend_angle", *(name for effect in self.effects for name in effect.coordinates))
+
+    @property
+    def cables(self) -> int:
+        """Number of cables in play: none unless the scene has the effect ``cables``."""
+        return len(self.arm.cables) if self.has("cables") else 0
+
+    def has(self, name: str) -> bool:
+        """Whether the scene calls for the effect of that name."""
+        return any(effect.name == name for effect in self.effects)
+
+    def table(self, place: str, columns: Iterable[str]) -> np.ndarray:
+        """The run-time numbers of a kernel, shape (disks, columns), for "segment" or "disk"."""
+        known = dict(self.arm.segment_columns() if place == "segment" else self.arm.disk_columns())
+        for effect in self.effects:
+            if effect.place == place:
+                known.update(effect.columns(self.arm))
+        names = list(columns)
+        table = np.empty((self.arm.disks, len(names)))
+        for number, name in enumerate(names):
+            table[:, number] = known[name]
+        return table
+
+    def check_tension(self, tension: object) -> np.ndarray:
+        """Tensions as an array of shape (cables,), N.
+
+        Raises ``InputError`` unless there is one finite, non-negative number for each cable.
+        """
+        values = np.atleast_1d(np.asarray([] if tension is None else tension, dtype=float))
+        if values.shape != (self.cables,):
+            raise InputError(f"{values.size} tensions given; the scene has {self.cables} cables in play.")
+        if not (np.isfinite(values).all() and (values >= 0).all()):
+            raise InputError(f"tensions must be finite and not negative; given: {values.tolist()}.")
+        return values

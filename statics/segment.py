@@ -1,0 +1,93 @@
+"""One constant-curvature segment and one disk in sympy: the symbols that effects are written in.
+
+A segment's coordinates are its bend angle phi = k L and its elongation e = L - L0; the paper's (k, L)
+follow from them. With h = phi / 2 its far end is a chord at half the angle (Rone 2012, Eq. 11):
+
+    x = L sigma_0(h) cos h,   y = L sigma_0(h) sin h,   theta = phi
+"""
+
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import sympy as sp
+
+from statics.errors import did_you_mean
+from statics.quantities import QUANTITIES
+from statics.sigma import Sigma
+
+
+def symbol(name: str) -> sp.Symbol:
+    """The real symbol of that name."""
+    return sp.Symbol(name, real=True)
+
+
+def _parameter(name: str) -> sp.Symbol:
+    if name.startswith("_") or name not in QUANTITIES:
+        raise AttributeError(f"no quantity '{name}' in the glossary.{did_you_mean(name, QUANTITIES)}")
+    return symbol(name)
+
+
+class CableSymbols(NamedTuple):
+    """One cable along one segment: its tension there and its hole-to-hole length (Eq. 23)."""
+
+    tension: Any
+    length: Any
+
+
+class SegmentSymbols:
+    """One segment: coordinates, rates, geometry; any other glossary name is a parameter of it."""
+
+    def __init__(self, coordinates: tuple[str, ...], cables: int) -> None:
+        self.coordinates = [symbol(name) for name in coordinates]
+        self.rates = [symbol(f"{name}_rate") for name in coordinates]
+        self.accelerations = [symbol(f"{name}_acceleration") for name in coordinates]
+        self.number_of_cables = cables
+        extends = "elongation" in coordinates
+        self.bend_angle = symbol("bend_angle")
+        self.elongation = symbol("elongation") if extends else sp.Integer(0)
+        self.bend_angle_rate = symbol("bend_angle_rate")
+        self.elongation_rate = symbol("elongation_rate") if extends else sp.Integer(0)
+        self.length = symbol("rest_length") + self.elongation
+
+    def __getattr__(self, name: str) -> sp.Symbol:
+        return _parameter(name)
+
+    @cached_property
+    def half_angle(self) -> Any:
+        """h = phi / 2."""
+        return self.bend_angle / 2
+
+    @cached_property
+    def displacement(self) -> sp.Matrix:
+        """Far end in the near end's frame, shape (2, 1), m. Rone 2012, Eq. 11."""
+        h = self.half_angle
+        chord = self.length * Sigma(0, h)
+        return sp.Matrix([chord * Sigma(-1, h), chord * h * Sigma(0, h)])
+
+    @cached_property
+    def cables(self) -> list[CableSymbols]:
+        """Every cable of the scene; beyond its anchor its tension is zero."""
+        return [self._cable(number) for number in range(1, self.number_of_cables + 1)]
+
+    def _cable(self, number: int) -> CableSymbols:
+        hole_offset = symbol(f"hole_offset_{number}")
+        tension = symbol(f"tension_{number}") * symbol(f"cable_passes_{number}")
+        return CableSymbols(tension, Sigma(0, self.half_angle) * (self.length - self.bend_angle * hole_offset))
+
+
+class DiskSymbols:
+    """One disk: pose, velocity, acceleration; any other glossary name is a parameter of it."""
+
+    def __init__(self) -> None:
+        self.position = (symbol("x"), symbol("y"))
+        self.angle = symbol("theta")
+        self.velocity = (symbol("velocity_x"), symbol("velocity_y"))
+        self.angular_velocity = symbol("angular_velocity")
+        self.acceleration = (symbol("acceleration_x"), symbol("acceleration_y"))
+        self.angular_acceleration = symbol("angular_acceleration")
+        self.coordinates = [*self.position, self.angle]
+        self.rates = [*self.velocity, self.angular_velocity]
+        self.accelerations = [*self.acceleration, self.angular_acceleration]
+
+    def __getattr__(self, name: str) -> sp.Symbol:
+        return _parameter(name)

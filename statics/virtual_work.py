@@ -1,0 +1,122 @@
+"""From load-displacement pairs to generalized forces, by virtual work (Rone 2012, Eq. 1-5).
+
+    Q_i = sum_j P_j . dr_j/dq_i
+
+for one segment (q: its own coordinates) and for one disk (q: its pose). The chain puts them together,
+so that no whole-arm expression is ever formed.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from statics.effects import Effect, Pair
+from statics.errors import InputError
+from statics.scene import Scene
+from statics.segment import DiskSymbols, SegmentSymbols
+
+
+@dataclass(frozen=True)
+class Forces:
+    """Generalized forces at one segment or disk, and the energies and powers behind them.
+
+    ``force`` has shape (coordinates, 1); ``mass``, ``damping`` and ``stiffness`` are its negative
+    derivatives by accelerations, rates and coordinates. ``energies`` and ``powers`` go by account.
+    """
+
+    force: sp.Matrix
+    mass: sp.Matrix
+    damping: sp.Matrix
+    stiffness: sp.Matrix
+    energies: dict[str, Any] = field(default_factory=dict)
+    powers: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class SceneForces:
+    """The forces of one segment and of one disk, with the symbols that they are written in."""
+
+    segment: SegmentSymbols
+    disk: DiskSymbols
+    on_segment: Forces
+    on_disk: Forces
+
+
+def dot(first: Any, second: Any) -> Any:
+    """Product of two scalars, or scalar product of two vectors."""
+    if isinstance(first, Sequence):
+        return sum(a * b for a, b in zip(first, second, strict=True))
+    return first * second
+
+
+def generalized_force(
+    pairs: Iterable[Pair], partials: Callable[[Any, int], Any], coordinates: Sequence[sp.Symbol]
+) -> sp.Matrix:
+    """Sum of P . partial_i(r) over the pairs, shape (coordinates, 1). Eq. 5."""
+    total = sp.zeros(len(coordinates), 1)
+    for load, displacement in pairs:
+        for number in range(len(coordinates)):
+            total[number] += dot(load, partials(displacement, number))
+    return total
+
+
+def partial_displacement(displacement: Any, coordinate: sp.Symbol) -> Any:
+    """dr/dq of a scalar or vector displacement. Eq. 3."""
+    if isinstance(displacement, Sequence):
+        return tuple(sp.diff(component, coordinate) for component in displacement)
+    return sp.diff(displacement, coordinate)
+
+
+def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
+    """Energy V with P = -dV/dr: of a constant load, or of one linear in its own displacement.
+
+    A linear load's energy is zero where the load is. Raises ``InputError`` for any other load.
+    """
+    load, displacement = pair
+    parts = load if isinstance(load, Sequence) else (load,)
+    if not any(sp.sympify(part).has(*coordinates) for part in parts):
+        return -dot(load, displacement)
+    if displacement in coordinates:
+        stiffness = -sp.diff(load, displacement)
+        if not stiffness.has(*coordinates):
+            return stiffness * sp.expand(load / stiffness) ** 2 / 2
+    raise InputError(f"no potential is known for the load {load} along {displacement}")
+
+
+def collect(effects: Iterable[Effect], place: str, at: Any) -> list[tuple[Effect, list[Pair]]]:
+    """The pairs of every effect at that place; a displacement that the scene does not have drops out."""
+    return [
+        (effect, [pair for pair in effect.pairs(at) if pair.displacement != 0])
+        for effect in effects
+        if effect.place == place
+    ]
+
+
+def derive_statics(scene: Scene) -> SceneForces:
+    """Forces of the effects that act at rest, with their potentials, those of the loads included."""
+    segment, disk = SegmentSymbols(scene.coordinates, scene.cables), DiskSymbols()
+    effects = scene.at_rest.effects
+    return SceneForces(
+        segment,
+        disk,
+        _at_rest(collect(effects, "segment", segment), segment.coordinates),
+        _at_rest(collect(effects, "disk", disk), disk.coordinates),
+    )
+
+
+def _at_rest(groups: list[tuple[Effect, list[Pair]]], coordinates: Sequence[sp.Symbol]) -> Forces:
+    pairs = [pair for _, group in groups for pair in group]
+    force = generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)
+    none = sp.zeros(len(coordinates))
+    energies = by_account(groups, lambda pair: potential(pair, coordinates))
+    return Forces(force, none, none, -force.jacobian(coordinates), energies)
+
+
+def by_account(groups: list[tuple[Effect, list[Pair]]], amount: Callable[[Pair], Any]) -> dict[str, Any]:
+    """Sum of an amount over the pairs of the effects that share an account."""
+    sums: dict[str, Any] = {}
+    for effect, group in groups:
+        sums[effect.account] = sums.get(effect.account, 0) + sum(amount(pair) for pair in group)
+    return sums
