@@ -58,6 +58,34 @@ class Dynamics:
         """Smallest length or hole-to-hole length over L0."""
         return self.kernel.clearance_sweep(y[: self.size].reshape(-1, self.dofs), self.segments)
 
+    def closest_segment(self, y: np.ndarray) -> int:
+        """Number of the segment nearest to a geometric limit."""
+        q = y[: self.size].reshape(-1, 1, self.dofs)
+        alone = [self.kernel.clearance_sweep(q[i], self.segments[i : i + 1]) for i in range(len(q))]
+        return int(np.argmin(alone)) + 1
+
+    def scales(self) -> np.ndarray:
+        """What one rad of bending compares with in each entry of the state, for absolute tolerances.
+
+        Elongations: the rest length; rates: the same times the arm's natural frequency; energies: the
+        bending stiffness over the rest length. Shape of the state.
+        """
+        arm = self.scene.arm
+        columns = arm.segment_columns() | arm.disk_columns()
+        spring = float(columns.get("bending_stiffness", 0.0)) / arm.rest_length
+        inertia = float(columns["disk_mass"]) * arm.disks * arm.total_length**2
+        frequency = np.sqrt(spring / arm.disks / inertia) if spring else 1.0
+        q = np.tile([1.0, arm.rest_length][: self.dofs], arm.disks)
+        return np.concatenate([q, frequency * q, np.full(2, spring or 1.0)])
+
+    def warm_up(self, span: Span) -> None:
+        """Compile the kernel, or load it compiled, so that what follows is solving alone."""
+        y = self.state(np.zeros((self.scene.arm.disks, self.dofs)))
+        self.rate(span.start, y, span)
+        self.jacobian(span.start, y, span)
+        self.clearance(y)
+        self.observe(y[None, :], span.tension(np.array([span.start])))
+
     def split(self, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates and rates, each (samples, disks, dofs), of states (samples, size)."""
         shape = (len(states), self.scene.arm.disks, self.dofs)

@@ -16,6 +16,7 @@ segments and disks count from 1 at the base.
 
 from collections import Counter
 from dataclasses import field
+from math import pi
 from typing import Annotated, Any
 
 import numpy as np
@@ -102,6 +103,11 @@ class Arm:
         if name not in PRESETS:
             raise InputError(f"unknown preset '{name}'.{did_you_mean(name, PRESETS)}")
         return cls(**{**PRESETS[name], **changes})
+
+    @staticmethod
+    def round_core(radius: float) -> dict[str, float]:
+        """Area and second moment of a round core of that radius (m), as arguments of ``Arm``."""
+        return {"area": pi * radius**2, "second_moment": pi * radius**4 / 4}
 
     @property
     def rest_length(self) -> float:

@@ -105,6 +105,19 @@ class StaticSolver:
             residual=residual,
         )
 
+    def ramp(self, tensions: Iterable[np.ndarray], start: np.ndarray | None = None) -> list[Equilibrium]:
+        """An equilibrium for each set of tensions, each from the last one that was found."""
+        points: list[Equilibrium] = []
+        for tension in tensions:
+            points.append(self.solve(tension, start))
+            if points[-1].found:
+                start = points[-1].coordinates
+        return points
+
+    def warm_up(self) -> None:
+        """Compile the kernel, or load it compiled, so that what follows is solving alone."""
+        self.solve(np.zeros(self.scene.cables))
+
 
 def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, np.ndarray]:
     """Curvature (1/m) and length (m) of segments, the paper's k and L, from their coordinates."""
@@ -129,12 +142,4 @@ def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
     Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
     starts from the last one that was. Raises ``InputError`` for tensions that do not fit.
     """
-    checked = [scene.check_tension(tension) for tension in tensions]
-    solver = StaticSolver(scene)
-    points: list[Equilibrium] = []
-    start: np.ndarray | None = None
-    for tension in checked:
-        points.append(solver.solve(tension, start))
-        if points[-1].found:
-            start = points[-1].coordinates
-    return points
+    return StaticSolver(scene).ramp([scene.check_tension(tension) for tension in tensions])

@@ -8,7 +8,7 @@ class ContinuumError(Exception):
     """Anything that this program refuses or cannot do; its text is meant for the user."""
 
 
-class InputError(ContinuumError, ValueError):
+class InputError(ContinuumError):
     """What was given cannot be simulated as given."""
 
 

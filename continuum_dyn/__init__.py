@@ -1,0 +1,7 @@
+"""Dynamics of planar cable-driven continuum arms by virtual power (Kane's method)."""
+
+from continuum_dyn.scenario import load_scenario
+from continuum_dyn.simulation import Run, Trajectory, simulate
+from continuum_dyn.study import Scenario
+
+__all__ = ["Run", "Scenario", "Trajectory", "load_scenario", "simulate"]

@@ -1,0 +1,229 @@
+"""Logs: HDF5 files that hold a run, and what is needed to understand it.
+
+Groups ``trajectory`` (samples of a motion), ``equilibria`` (points) and ``arm`` (cables). Every dataset
+carries ``units`` and ``long_name`` from the glossary and dimension scales, so that xarray opens a group
+as it is. A log is complete or not there: it is written beside its place and then moved.
+"""
+
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from continuum_dyn.simulation import Run, Trajectory
+from continuum_dyn.study import MotionStudy, Scenario
+from statics.equilibria import Equilibrium
+from statics.errors import LogError
+from statics.outcome import Outcome
+from statics.quantities import QUANTITIES
+
+FORMAT = "continuum-dyn log"
+FORMAT_VERSION = 1
+
+_DIMENSIONS = {
+    **dict.fromkeys(("bend_angle", "bend_angle_rate", "elongation", "elongation_rate"), "segment"),
+    **dict.fromkeys(("curvature", "length"), "segment"),
+    **dict.fromkeys(("disk_x", "disk_y", "disk_theta"), "disk"),
+    "tension": "cable",
+}
+"""Second dimension of datasets that have one."""
+
+_PER_POINT = (
+    "tension",
+    "bend_angle",
+    "elongation",
+    "curvature",
+    "length",
+    "disk_x",
+    "disk_y",
+    "disk_theta",
+    "elastic_energy",
+    "gravity_energy",
+    "stable",
+    "unstable_directions",
+    "residual",
+)
+
+
+@dataclass(frozen=True)
+class Log:
+    """A log read back: arrays by glossary name; ``trajectory`` is empty where nothing moved."""
+
+    path: Path
+    title: str
+    outcome: Outcome
+    message: str
+    scenario: str
+    attributes: Mapping[str, Any]
+    cables: tuple[str, ...]
+    arm: Mapping[str, np.ndarray]
+    trajectory: Mapping[str, np.ndarray]
+    equilibria: Mapping[str, np.ndarray]
+
+
+def write_log(run: Run, path: Path) -> None:
+    """Write a run. Raises ``LogError`` if the file cannot be written; then nothing is left behind."""
+    part = path.with_name(path.name + ".part")
+    try:
+        with h5py.File(part, "w", libver=("v110", "v110")) as file:
+            _write(file, run)
+        os.replace(part, path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise LogError(f"cannot write the log {path}: {error.strerror or error}.") from error
+
+
+def read_log(path: Path) -> Log:
+    """Read a whole log. Raises ``LogError`` for a file that is not one, or of another format version."""
+    try:
+        with h5py.File(path, "r") as file:
+            return _read(file, path)
+    except FileNotFoundError as error:
+        raise LogError(f"{path}: no such file.") from error
+    except (OSError, KeyError) as error:
+        raise LogError(f"{path}: not a log of continuum-dyn: {error}") from error
+
+
+def _write(file: h5py.File, run: Run) -> None:
+    file.attrs.update(_root_attributes(run))
+    _write_arm(file.create_group("arm"), run.scenario)
+    points, times = _points(run)
+    if points:
+        group = file.create_group("equilibria")
+        columns = {name: _stacked(points, name) for name in _PER_POINT}
+        if times is not None:
+            columns["time"] = times
+        known = {name: values for name, values in columns.items() if values is not None}
+        _write_group(group, "point", np.arange(1, len(points) + 1), known, run.scenario)
+    if run.trajectory is not None:
+        group = file.create_group("trajectory")
+        group.attrs.update(run.trajectory.counters)
+        columns = _trajectory_columns(run.trajectory)
+        _write_group(group, "time", columns.pop("time"), columns, run.scenario)
+
+
+def _root_attributes(run: Run) -> dict[str, Any]:
+    packages = ("continuum-dyn", "numpy", "scipy", "sympy", "numba", "h5py")
+    attributes: dict[str, Any] = {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "title": run.scenario.title,
+        "scenario": run.scenario.text,
+        "study": run.scenario.study.kind,
+        "outcome": str(run.outcome),
+        "message": run.message,
+        "solve_time": run.solve_time,
+        "versions": ", ".join(["python " + platform.python_version(), *(f"{p} {version(p)}" for p in packages)]),
+    }
+    if isinstance(run.scenario.study, MotionStudy):
+        attributes |= asdict(run.scenario.solver)
+    if run.static_gap is not None:
+        attributes["static_gap"] = run.static_gap
+    return attributes
+
+
+def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
+    arm = scenario.scene.arm
+    numbers = {name: value for name, value in vars(arm).items() if isinstance(value, int | float)}
+    group.attrs.update(numbers)
+    cables = arm.cables[: scenario.scene.cables]
+    _write_scale(group, "cable", _names(scenario))
+    for name, values in {
+        "hole_offset": [cable.hole_offset for cable in cables],
+        "anchor": [cable.anchor or arm.disks for cable in cables],
+    }.items():
+        _write_dataset(group, name, np.array(values), ["cable"])
+
+
+def _points(run: Run) -> tuple[list[Equilibrium], np.ndarray | None]:
+    """The equilibria to keep, and the times that they belong to in a motion."""
+    if run.trajectory is None:
+        return [point for point in run.equilibria if point.found], None
+    assert isinstance(run.scenario.study, MotionStudy)
+    if run.static_path:
+        timed = list(zip(run.static_path, run.trajectory.time, strict=True))
+    else:
+        timed = list(zip(run.equilibria, (0.0, run.scenario.study.duration), strict=True))
+    found = [(point, t) for point, t in timed if point.found]
+    return [point for point, _ in found], np.array([t for _, t in found])
+
+
+def _stacked(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:
+    values = [getattr(point, name) for point in points]
+    return None if values[0] is None else np.array(values)
+
+
+def _trajectory_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
+    columns = {name: value for name, value in vars(trajectory).items() if isinstance(value, np.ndarray)}
+    del columns["tip_speed"]
+    return columns | trajectory.ledger
+
+
+def _names(scenario: Scenario) -> np.ndarray:
+    names = scenario.scene.arm.cable_names[: scenario.scene.cables]
+    return np.array(names, dtype=h5py.string_dtype())
+
+
+def _write_group(
+    group: h5py.Group, first: str, along: np.ndarray, columns: Mapping[str, np.ndarray], scenario: Scenario
+) -> None:
+    """Datasets whose first axis is ``first``, with the scales of all axes beside them."""
+    numbers = np.arange(1, scenario.scene.arm.disks + 1)
+    scales = {first: along, "segment": numbers, "disk": numbers, "cable": _names(scenario)}
+    for name, values in scales.items():
+        _write_scale(group, name, values)
+    for name, values in columns.items():
+        _write_dataset(group, name, values, [first, _DIMENSIONS[name]] if values.ndim == 2 else [first])
+
+
+def _write_scale(group: h5py.Group, name: str, values: np.ndarray) -> None:
+    group.create_dataset(name, data=values).make_scale(name)
+    _describe(group[name], name)
+
+
+def _write_dataset(group: h5py.Group, name: str, values: np.ndarray, dimensions: Sequence[str]) -> None:
+    if values.dtype.kind == "f" and not np.isfinite(values).all():
+        raise LogError(f"{group.name}/{name} holds numbers that are not finite; they belong in no log.")
+    packed = {"compression": "gzip", "shuffle": True, "fletcher32": True} if values.size > 1000 else {}
+    dataset = group.create_dataset(name, data=values, **packed)
+    for axis, scale in enumerate(dimensions):
+        dataset.dims[axis].attach_scale(group[scale])
+    _describe(dataset, name)
+
+
+def _describe(dataset: h5py.Dataset, name: str) -> None:
+    quantity = QUANTITIES[name]
+    dataset.attrs["units"] = quantity.unit
+    dataset.attrs["long_name"] = quantity.meaning
+
+
+def _read(file: h5py.File, path: Path) -> Log:
+    attributes = dict(file.attrs)
+    if attributes.get("format") != FORMAT:
+        raise LogError(f"{path}: an HDF5 file, but not a log of continuum-dyn.")
+    if attributes["format_version"] != FORMAT_VERSION:
+        raise LogError(
+            f"{path}: log format {attributes['format_version']}; this program reads format {FORMAT_VERSION}."
+        )
+    return Log(
+        path=path,
+        title=attributes["title"],
+        outcome=Outcome(attributes["outcome"]),
+        message=attributes["message"],
+        scenario=attributes["scenario"],
+        attributes=attributes,
+        cables=tuple(name.decode() for name in file["arm/cable"][()]),
+        arm=dict(file["arm"].attrs) | _arrays(file["arm"]),
+        trajectory=_arrays(file.get("trajectory")),
+        equilibria=_arrays(file.get("equilibria")),
+    )
+
+
+def _arrays(group: h5py.Group | None) -> dict[str, np.ndarray]:
+    return {} if group is None else {name: dataset[()] for name, dataset in group.items() if name != "cable"}

@@ -1,0 +1,146 @@
+"""What is asked of a scene: the kinds of study, the solver's settings, and the scenario that joins them."""
+
+import dataclasses
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass
+
+from continuum_dyn.profiles import Constant, Profile
+from statics.checked import STRICT, Positive
+from statics.errors import InputError
+from statics.scene import Scene
+
+MAX_STORED = 20_000_000
+"""Most disks times samples that a log may hold."""
+
+
+@dataclass(frozen=True, config=STRICT)
+class EquilibriumStudy:
+    """Where the arm rests under its tensions."""
+
+    kind: Literal["equilibrium"] = "equilibrium"
+
+
+@dataclass(frozen=True, config=STRICT)
+class RampStudy:
+    """Where the arm rests under one set of tensions after another."""
+
+    kind: Literal["ramp"] = "ramp"
+
+
+@dataclass(frozen=True, config=STRICT)
+class MotionStudy:
+    """How the arm moves from the equilibrium of the profiles' first tensions.
+
+    ``duration`` in s; ``samples`` are uniform with both ends included; ``static_path`` asks for the
+    equilibrium of every sample's tensions as well.
+    """
+
+    duration: Positive
+    samples: Annotated[int, Field(ge=2)] = 1001
+    static_path: bool = False
+    kind: Literal["motion"] = "motion"
+
+
+@dataclass(frozen=True, config=STRICT)
+class StepResponseStudy(MotionStudy):
+    """The same motion, and whether it has settled to the equilibrium of the last tensions.
+
+    Settled means: tip within ``settled_within`` (m; by default 1e-3 of the arm's length) of that
+    equilibrium's, and slower than that distance per second.
+    """
+
+    settled_within: Positive | None = None
+    kind: Literal["step_response"] = "step_response"  # pyright: ignore[reportIncompatibleVariableOverride]
+
+
+Study = EquilibriumStudy | RampStudy | MotionStudy | StepResponseStudy
+STUDIES: dict[str, type[Study]] = {
+    "equilibrium": EquilibriumStudy,
+    "ramp": RampStudy,
+    "motion": MotionStudy,
+    "step_response": StepResponseStudy,
+}
+
+Method = Literal["RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+
+
+@dataclass(frozen=True, config=STRICT)
+class Solver:
+    """Integrator and its local error tolerances.
+
+    ``rtol`` is relative. ``atol`` is in rad for bend angles; elongations use it times the segment's rest
+    length, rates the same times the arm's natural frequency, energies times its bending stiffness over
+    that length.
+    """
+
+    method: Method = "LSODA"
+    rtol: Annotated[float, Field(ge=1e-13, lt=1)] = 1e-6
+    atol: Positive = 1e-9
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenario:
+    """A scene, the tension of each of its cables, and what is asked of it.
+
+    ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
+    ``text`` is the file that it was read from. Raises ``InputError`` where these do not fit.
+    """
+
+    scene: Scene
+    tension: tuple[Profile, ...] | tuple[tuple[float, ...], ...]
+    study: Study
+    solver: Solver = Solver()
+    title: str = ""
+    text: str = ""
+
+    def __post_init__(self) -> None:
+        if len(self.tension) != self.scene.cables:
+            raise InputError(f"{len(self.tension)} tensions given for {self.scene.cables} cables.")
+        if isinstance(self.study, MotionStudy):
+            self._check_motion(self.study)
+        elif isinstance(self.study, RampStudy):
+            if len({len(values) for values in self.ramps}) > 1:
+                counts = ", ".join(str(len(values)) for values in self.ramps)
+                raise InputError(f"tensions of a ramp must be lists of equal length; they have {counts} entries.")
+        elif not all(isinstance(profile, Constant) for profile in self.profiles):
+            raise InputError('an "equilibrium" study takes one number for each tension.')
+
+    def _check_motion(self, study: MotionStudy) -> None:
+        if not self.scene.has("inertia"):
+            raise InputError(f'a "{study.kind}" study needs inertia. Add inertia = {{}} to [effects].')
+        stored = study.samples * self.scene.arm.disks
+        if stored > MAX_STORED:
+            raise InputError(
+                f"{study.samples} samples of {self.scene.arm.disks} disks would store {stored:.3g} poses. "
+                f"Allowed: {MAX_STORED:.3g}. Ask for fewer samples."
+            )
+
+    @property
+    def profiles(self) -> tuple[Profile, ...]:
+        """The profiles of a study of motion, or the constants of an equilibrium."""
+        profiles = tuple(p for p in self.tension if not isinstance(p, tuple))
+        if len(profiles) != len(self.tension):
+            raise InputError(f'lists of tensions belong to a "ramp" study; this is "{self.study.kind}".')
+        return profiles
+
+    @property
+    def ramps(self) -> tuple[tuple[float, ...], ...]:
+        """The lists of a ramp study."""
+        lists = tuple(values for values in self.tension if isinstance(values, tuple))
+        if len(lists) != len(self.tension):
+            raise InputError('a "ramp" study takes lists of tensions, or numbers.')
+        return lists
+
+    @property
+    def settled_within(self) -> float:
+        """Distance (m) from the final equilibrium, and speed (m/s), below which the tip has settled."""
+        asked = getattr(self.study, "settled_within", None)
+        return 1e-3 * self.scene.arm.total_length if asked is None else asked
+
+    @property
+    def initial_tension(self) -> np.ndarray:
+        """Tensions of the equilibrium that a motion starts from, shape (cables,), N."""
+        return np.array([profile.initial for profile in self.profiles])
