@@ -1,7 +1,8 @@
 """Dynamics of planar cable-driven continuum arms by virtual power (Kane's method)."""
 
 from continuum_dyn.scenario import load_scenario
-from continuum_dyn.simulation import Run, Trajectory, simulate
+from continuum_dyn.simulation import Run, simulate
 from continuum_dyn.study import Scenario
+from continuum_dyn.trajectory import Trajectory
 
 __all__ = ["Run", "Scenario", "Trajectory", "load_scenario", "simulate"]

@@ -37,6 +37,7 @@ class Dynamics:
         self.scene = scene
         self.dofs = len(scene.coordinates)
         self.size = scene.arm.disks * self.dofs
+        self.state_size = 2 * self.size + 2
         self.kernel = codegen.load(scene, RECIPE)
         self.segments = scene.table("segment", self.kernel.SEGMENT_COLUMNS)
         self.disks = scene.table("disk", self.kernel.DISK_COLUMNS)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def tension_at(t: float, pieces: np.ndarray, tension: np.ndarray) -> None:
-    """Tensions at time t from one piece of each profile: start, value, slope, amplitude, angular frequency."""
+    """Tensions at time t from one piece of each profile; its columns are those of ``profiles.Piece``."""
     for c in range(tension.shape[0]):
         tension[c] = (
             pieces[c, 1] + pieces[c, 2] * (t - pieces[c, 0]) + pieces[c, 3] * math.sin(pieces[c, 4] * t)
@@ -51,7 +51,7 @@ def motion_sweep(
 def solve_mass(
     segments: np.ndarray, disks: np.ndarray, chain: np.ndarray, residual: np.ndarray, w: np.ndarray
 ) -> None:
-    """w = -M^-1 residual, in one inward and one outward sweep."""
+    """W = -M^-1 residual, in one inward and one outward sweep."""
     descent = np.empty_like(residual)
     eliminate_sweep(segments, disks, chain, residual, descent, descent)
     substitute_sweep(chain, descent, w)
@@ -75,7 +75,9 @@ def acceleration(
     return powers
 
 
-def rate(t: float, y: np.ndarray, pieces: np.ndarray, segments: np.ndarray, disks: np.ndarray, dofs: int) -> np.ndarray:
+def rate(
+    t: float, y: np.ndarray, pieces: np.ndarray, segments: np.ndarray, disks: np.ndarray, dofs: int
+) -> np.ndarray:
     """dy/dt: the right-hand side for any integrator."""
     n = segments.shape[0]
     size = n * dofs
@@ -137,8 +139,11 @@ def observe(
     velocity: np.ndarray,
     ledger: np.ndarray,
 ) -> None:
-    """For every sample, from q, u (samples, n, dofs) and tension (samples, cables): poses and velocities of
-    the disks, (samples, n, 3); kinetic, elastic, gravity energy, power in, power dissipated, (samples, 5)."""
+    """What follows from q, u (samples, n, dofs) and tension (samples, cables), for every sample.
+
+    Poses and velocities of the disks, shape (samples, n, 3); and into ``ledger``, shape (samples, 5):
+    kinetic, elastic and gravity energy, power in, power dissipated.
+    """
     for s in range(q.shape[0]):
         carried = OBSERVE_START
         for i in range(q.shape[1]):

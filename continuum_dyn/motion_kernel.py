@@ -36,5 +36,9 @@ def write(scene: Scene) -> str:
 RECIPE = Recipe(
     "motion",
     write,
-    (*DERIVATION, _EQUATIONS, *(_HERE / f"{stem}.py" for stem in ("virtual_power", "motion_steps", "motion_kernel"))),
+    (
+        *DERIVATION,
+        _EQUATIONS,
+        *(_HERE / f"{stem}.py" for stem in ("virtual_power", "motion_steps", "motion_kernel")),
+    ),
 )

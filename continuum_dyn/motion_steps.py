@@ -11,7 +11,17 @@ from typing import Any
 
 import sympy as sp
 
-from statics.recursion import Reach, Step, far_pose, name_forces, placed, reach_of, residual_step, turn_frame, turned
+from statics.recursion import (
+    Reach,
+    Step,
+    far_pose,
+    name_forces,
+    placed,
+    reach_of,
+    residual_step,
+    turn_frame,
+    turned,
+)
 from statics.segment import symbol
 from statics.trace import Trace
 from statics.virtual_work import SceneForces
@@ -20,7 +30,9 @@ ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 POWERS = ("input_power", "dissipated_power")
 
 
-def _far_velocity(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+def _far_velocity(
+    trace: Trace, forces: SceneForces, reach: Reach
+) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
     near = sp.Matrix([symbol("near_velocity_x"), symbol("near_velocity_y")])
     spin = symbol("near_angular_velocity")
     relative = trace.let("relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
@@ -51,7 +63,9 @@ def _far_acceleration(
         + curving,
     )
     far_spin_rate = trace.let("far_angular_acceleration", spin_rate + w[0])
-    carried = dict(zip(map(str, [*near, spin_rate]), [(0.0, value) for value in [*far, far_spin_rate]], strict=True))
+    carried = dict(
+        zip(map(str, [*near, spin_rate]), [(0.0, value) for value in [*far, far_spin_rate]], strict=True)
+    )
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
 
@@ -107,7 +121,10 @@ def residual_tangent_step(forces: SceneForces) -> Step:
     step, motion = residual_step(forces), motion_tangent_step(forces)
     known = {s for symbols, _ in motion.trace.lines for s in symbols}
     inputs = set().union(*(value.free_symbols for _, value in step.trace.lines)) | set().union(
-        *(sp.sympify(value).free_symbols for value in (*step.stores["residual"], *(v for _, v in step.carried.values())))
+        *(
+            sp.sympify(value).free_symbols
+            for value in (*step.stores["residual"], *(v for _, v in step.carried.values()))
+        )
     )
     direction = {s: symbol(f"{s}_change") for s in inputs if symbol(f"{s}_change") in known}
     direction |= {symbol(name): symbol(f"{name}_change") for name in step.carried}
@@ -118,7 +135,10 @@ def residual_tangent_step(forces: SceneForces) -> Step:
         ("disks", "chain", "residual_change"),
         trace,
         carried=step.carried
-        | {f"{name}_change": (0.0, trace.change_of(value, change)) for name, (_, value) in step.carried.items()},
+        | {
+            f"{name}_change": (0.0, trace.change_of(value, change))
+            for name, (_, value) in step.carried.items()
+        },
         stores={"residual_change": [trace.change_of(value, change) for value in step.stores["residual"]]},
     )
 
@@ -137,7 +157,9 @@ def observe_motion_step(forces: SceneForces) -> Step:
         "Outwards: poses and velocities of the disks, energies and powers.",
         ("q", "u", "tension", "segments", "disks", "pose", "velocity"),
         trace,
-        results={name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in booked.items()},
+        results={
+            name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in booked.items()
+        },
         carried=frame | pose | motion,
         stores={
             "pose": [at_disk[coordinate] for coordinate in forces.disk.coordinates],

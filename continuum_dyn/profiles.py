@@ -17,7 +17,11 @@ from pydantic.dataclasses import dataclass
 from statics.checked import STRICT, NonNegative, Positive
 from statics.errors import InputError
 
+TIME_RESOLUTION = 1e-300
+"""Rows of a table closer than this (s) would have slopes beyond floating point."""
+
 Piece = tuple[float, float, float, float, float]
+"""Start (s), value (N), slope (N/s), amplitude (N), angular frequency (rad/s)."""
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -39,7 +43,10 @@ class Constant:
 
 @dataclass(frozen=True, config=STRICT)
 class Step:
-    """``before`` until the time ``at``, ``after`` from then on; with ``at`` = 0 the arm starts from ``before``."""
+    """``before`` until the time ``at``, ``after`` from then on.
+
+    With ``at`` = 0 the arm starts from the equilibrium of ``before``.
+    """
 
     before: NonNegative
     after: NonNegative
@@ -69,7 +76,9 @@ class Ramp:
 
     def __post_init__(self) -> None:
         if self.end <= self.start:
-            raise InputError(f"a ramp must end after it starts; start is {self.start:g} s, end {self.end:g} s")
+            raise InputError(
+                f"a ramp must end after it starts; start is {self.start:g} s, end {self.end:g} s"
+            )
 
     @property
     def initial(self) -> float:
@@ -95,7 +104,7 @@ class Sine:
     def __post_init__(self) -> None:
         if abs(self.amplitude) > self.mean:
             raise InputError(
-                f"a cable cannot push; mean {self.mean:g} N with amplitude {self.amplitude:g} N falls below zero"
+                f"a cable cannot push; mean {self.mean:g} N, amplitude {self.amplitude:g} N falls below zero"
             )
 
     @property
@@ -121,7 +130,13 @@ class Table:
             raise InputError(f"{len(self.time)} times, but {len(self.tension)} tensions")
         for row, (earlier, later) in enumerate(pairwise(self.time), start=2):
             if later <= earlier:
-                raise InputError(f"row {row}: time {later:g} s does not come after {earlier:g} s; times must increase")
+                raise InputError(
+                    f"row {row}: time {later:g} s does not come after {earlier:g} s; times must increase"
+                )
+            if later - earlier < TIME_RESOLUTION:
+                raise InputError(
+                    f"row {row}: {later - earlier:g} s after the row before; at least {TIME_RESOLUTION:g} s"
+                )
 
     @property
     def initial(self) -> float:
@@ -131,7 +146,9 @@ class Table:
     def pieces(self) -> list[Piece]:
         """One piece before the first row, one from each row to the next, one after the last."""
         rows = list(zip(self.time, self.tension, strict=True))
-        between = [(t, value, (later[1] - value) / (later[0] - t), 0.0, 0.0) for (t, value), later in pairwise(rows)]
+        between = [
+            (t, value, (later[1] - value) / (later[0] - t), 0.0, 0.0) for (t, value), later in pairwise(rows)
+        ]
         first, last = (min(0.0, self.time[0]), self.tension[0]), rows[-1]
         return [(*first, 0.0, 0.0, 0.0), *between, (*last, 0.0, 0.0, 0.0)]
 

@@ -5,7 +5,6 @@ carries ``units`` and ``long_name`` from the glossary and dimension scales, so t
 as it is. A log is complete or not there: it is written beside its place and then moved.
 """
 
-import os
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -16,8 +15,9 @@ from typing import Any
 import h5py
 import numpy as np
 
-from continuum_dyn.simulation import Run, Trajectory
+from continuum_dyn.simulation import Run
 from continuum_dyn.study import MotionStudy, Scenario
+from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium
 from statics.errors import LogError
 from statics.outcome import Outcome
@@ -73,7 +73,7 @@ def write_log(run: Run, path: Path) -> None:
     try:
         with h5py.File(part, "w", libver=("v110", "v110")) as file:
             _write(file, run)
-        os.replace(part, path)
+        part.replace(path)
     except OSError as error:
         part.unlink(missing_ok=True)
         raise LogError(f"cannot write the log {path}: {error.strerror or error}.") from error
@@ -119,7 +119,9 @@ def _root_attributes(run: Run) -> dict[str, Any]:
         "outcome": str(run.outcome),
         "message": run.message,
         "solve_time": run.solve_time,
-        "versions": ", ".join(["python " + platform.python_version(), *(f"{p} {version(p)}" for p in packages)]),
+        "versions": ", ".join(
+            ["python " + platform.python_version(), *(f"{p} {version(p)}" for p in packages)]
+        ),
     }
     if isinstance(run.scenario.study, MotionStudy):
         attributes |= asdict(run.scenario.solver)

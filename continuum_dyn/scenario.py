@@ -173,7 +173,9 @@ def _read(path: Path) -> str:
 
 def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
     is_ramp = isinstance(file.study, RampStudy)
-    effects = [effect for name in EffectsTable.model_fields if (effect := getattr(file.effects, name)) is not None]
+    effects = [
+        effect for name in EffectsTable.model_fields if (effect := getattr(file.effects, name)) is not None
+    ]
     if file.cables:
         effects.append(Cables())
     if file.loads:
@@ -196,10 +198,12 @@ def _arm(file: ScenarioFile) -> Arm:
     preset = given.pop("preset", None)
     if preset is not None and preset not in PRESETS:
         raise InputError(f"[arm] unknown preset '{preset}'.{did_you_mean(preset, PRESETS)}")
-    numbers = {**PRESETS.get(preset, {}), **_with_radius(given)}
+    numbers = {**({} if preset is None else PRESETS[preset]), **_with_radius(given)}
     missing = [name for name in ("disks", "disk_spacing") if name not in numbers]
     if missing:
-        raise InputError(f"[arm] missing {' and '.join(missing)}. Give them, or a preset: {', '.join(PRESETS)}.")
+        raise InputError(
+            f"[arm] missing {' and '.join(missing)}. Give them, or a preset: {', '.join(PRESETS)}."
+        )
     cables = tuple(
         Cable(cable.name or f"cable_{number}", cable.hole_offset, cable.anchor)
         for number, cable in enumerate(file.cables, start=1)
@@ -224,7 +228,9 @@ def _ramp_or_profile(cable: CableTable, path: Path, is_ramp: bool) -> Any:
         if isinstance(tension, float | int):
             return (float(tension),)
         if not isinstance(tension, list):
-            raise InputError('[[cables]] a "ramp" study takes a number or a list of numbers for each tension.')
+            raise InputError(
+                '[[cables]] a "ramp" study takes a number or a list of numbers for each tension.'
+            )
         return tuple(map(float, tension))
     if isinstance(tension, list):
         raise InputError('[[cables]] a list of tensions belongs to [study] kind = "ramp".')
@@ -265,7 +271,9 @@ def _row(name: str, number: int, row: list[str]) -> tuple[float, float]:
     try:
         t, tension = map(float, row)
     except ValueError as error:
-        raise InputError(f"table '{name}', row {number}: two numbers expected; read: {','.join(row)[:60]}") from error
+        raise InputError(
+            f"table '{name}', row {number}: two numbers expected; read: {','.join(row)[:60]}"
+        ) from error
     return t, tension
 
 

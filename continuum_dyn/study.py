@@ -92,7 +92,7 @@ class Scenario:
     scene: Scene
     tension: tuple[Profile, ...] | tuple[tuple[float, ...], ...]
     study: Study
-    solver: Solver = Solver()
+    solver: Solver = dataclasses.field(default_factory=Solver)
     title: str = ""
     text: str = ""
 
@@ -104,7 +104,9 @@ class Scenario:
         elif isinstance(self.study, RampStudy):
             if len({len(values) for values in self.ramps}) > 1:
                 counts = ", ".join(str(len(values)) for values in self.ramps)
-                raise InputError(f"tensions of a ramp must be lists of equal length; they have {counts} entries.")
+                raise InputError(
+                    f"tensions of a ramp must be lists of equal length; they have {counts} entries."
+                )
         elif not all(isinstance(profile, Constant) for profile in self.profiles):
             raise InputError('an "equilibrium" study takes one number for each tension.')
 

@@ -24,7 +24,9 @@ def velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequenc
     return sum(sp.diff(displacement, q) * u for q, u in zip(coordinates, rates, strict=True))
 
 
-def partial_velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol], i: int) -> Any:
+def partial_velocity(
+    displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol], i: int
+) -> Any:
     """dr'/du_i, with the shape of the displacement."""
     moving = velocity(displacement, coordinates, rates)
     if isinstance(moving, Sequence):

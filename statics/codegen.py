@@ -58,7 +58,9 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
     """The same functions as plain Python, for tests and for reading along in a debugger."""
     text = recipe.write(scene)
     text = text.replace("from numba import njit\n", "")
-    text = text.replace('compiled = njit(cache=True, error_model="numpy", nogil=True)', "compiled = lambda f: f")
+    text = text.replace(
+        'compiled = njit(cache=True, error_model="numpy", nogil=True)', "compiled = lambda f: f"
+    )
     module = ModuleType(f"interpreted_{recipe.kind}")
     exec(compile(text, module.__name__, "exec"), module.__dict__)
     return module
@@ -91,7 +93,9 @@ def kernel_folder() -> Path:
             f"cannot make the folder for generated kernels, {folder}: {error.strerror}. "
             "Name another with the environment variable CONTINUUM_DYN_CACHE."
         ) from error
-    if os.name == "posix" and (status.st_uid != os.getuid() or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)):
+    if os.name == "posix" and (
+        status.st_uid != os.getuid() or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    ):
         raise KernelCacheError(
             f"the folder for generated kernels, {folder}, may be written to by others, and kernels are code. "
             f"Try: chmod 700 {folder}, or name another with the environment variable CONTINUUM_DYN_CACHE."
@@ -124,7 +128,7 @@ def _write_atomically(path: Path, text: str) -> None:
         handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
         with os.fdopen(handle, "w", encoding="utf-8") as file:
             file.write(text)
-        os.replace(name, path)
+        Path(name).replace(path)
     except OSError as error:
         raise KernelCacheError(f"cannot write the generated kernel {path}: {error.strerror}.") from error
 

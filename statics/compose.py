@@ -56,7 +56,9 @@ def compose(
     functions = [_print_step(body, columns, ladders) for body in bodies]
     parts = [
         HEADER.format(
-            title=title, coordinates=", ".join(map(str, forces.segment.coordinates)), effects=", ".join(effects)
+            title=title,
+            coordinates=", ".join(map(str, forces.segment.coordinates)),
+            effects=", ".join(effects),
         ),
         _constants(bodies, columns),
         *(_compiled(ladder_source(order)) for order in sorted(ladders)),
@@ -196,7 +198,9 @@ def _assignments(lines: list[Any], ladders: set[int]) -> list[str]:
         names = ["sigma_minus_1", *(f"sigma_{n}" for n in range(order + 1))]
         argument = next(iter(ladder)).args[1]
         text.append(f"{', '.join(names)} = sigma_ladder_{order}({_code(argument)})")
-    known = {call: symbol("sigma_minus_1" if call.args[0] == -1 else f"sigma_{call.args[0]}") for call in ladder}
+    known = {
+        call: symbol("sigma_minus_1" if call.args[0] == -1 else f"sigma_{call.args[0]}") for call in ladder
+    }
     for symbols, value in _without_repetition([(s, value.xreplace(known)) for s, value in lines]):
         text.append(f"{', '.join(map(str, symbols))} = {_code(value)}")
     return text
@@ -224,13 +228,13 @@ def _without_repetition(lines: list[Any]) -> list[Any]:
 class _Printer(PythonCodePrinter):
     """Python text; calls of the module's own functions under their own names."""
 
-    def _print_AppliedUndef(self, call: Any) -> str:
+    def _print_AppliedUndef(self, call: Any) -> str:  # noqa: N802 (sympy's name)
         return f"{call.func.__name__}({', '.join(map(self._print, call.args))})"
 
-    def _print_Max(self, expression: Any) -> str:
+    def _print_Max(self, expression: Any) -> str:  # noqa: N802
         return f"max({', '.join(map(self._print, expression.args))})"
 
-    def _print_Min(self, expression: Any) -> str:
+    def _print_Min(self, expression: Any) -> str:  # noqa: N802
         return f"min({', '.join(map(self._print, expression.args))})"
 
 

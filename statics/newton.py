@@ -12,9 +12,25 @@ import numpy as np
 
 if TYPE_CHECKING:
     from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
-    from statics.generated import CHAIN_COLUMNS, OBSERVE_START, PIVOT_COLUMNS, POSE_START, observe_step, pose_step
+    from statics.generated import (
+        CHAIN_COLUMNS,
+        OBSERVE_START,
+        PIVOT_COLUMNS,
+        POSE_START,
+        observe_step,
+        pose_step,
+    )
 
 STABLE, UNSTABLE, LIMIT, NOT_FOUND = 0, 1, 2, 3
+
+AT_REST = 1e-8
+"""A Newton step below this (rad, or elongation over L0) is the last one: its square is below rounding."""
+AT_LIMIT = 1e-6
+"""Clearance (over L0) at which an arm that still descends has reached its geometric limit."""
+LARGEST_TURN = 1.0
+"""Most that one step may turn any disk, rad."""
+ROUNDING = 1e-11
+"""A predicted fall of the potential below this part of its scale cannot be seen in it."""
 
 
 def pose_sweep(
@@ -83,7 +99,7 @@ def inner(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def advance(q: np.ndarray, factor: float, change: np.ndarray, trial: np.ndarray) -> None:
-    """trial = q + factor * change."""
+    """Trial = q + factor * change."""
     for i in range(q.shape[0]):
         for k in range(q.shape[1]):
             trial[i, k] = q[i, k] + factor * change[i, k]
@@ -119,6 +135,56 @@ def saddle_direction(
     return curvature * shrink * shrink
 
 
+def shorten(
+    q: np.ndarray,
+    change: np.ndarray,
+    factor: float,
+    promised: tuple[float, float, float],
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    trial: np.ndarray,
+) -> tuple[float, tuple[float, float, float]]:
+    """Halve the step until the potential falls enough (Armijo) and no geometric limit is crossed.
+
+    ``promised`` is the potential to fall from, its slope and its curvature along ``change``. Returns the
+    factor, 0 if there is none, and what ``pose_sweep`` says of ``trial``, the accepted q.
+    """
+    potential, slope, curvature = promised
+    for _ in range(60):
+        advance(q, factor, change, trial)
+        seen = pose_sweep(trial, tension, segments, disks, chain)
+        fall = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
+        if seen[2] > 0.0 and seen[0] <= potential + fall:
+            return factor, seen
+        factor *= 0.5
+    return 0.0, (potential, 0.0, 0.0)
+
+
+def lengthen(
+    q: np.ndarray,
+    change: np.ndarray,
+    factor: float,
+    largest: float,
+    seen: tuple[float, float, float],
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    trial: np.ndarray,
+) -> tuple[float, float, float]:
+    """Double an accepted step while that lowers the potential: an indefinite matrix says little of length."""
+    while 2.0 * factor <= largest:
+        advance(q, 2.0 * factor, change, trial)
+        further = pose_sweep(trial, tension, segments, disks, chain)
+        if further[2] <= 0.0 or further[0] >= seen[0]:
+            break
+        factor, seen = 2.0 * factor, further
+    advance(q, factor, change, trial)
+    return pose_sweep(trial, tension, segments, disks, chain)
+
+
 def find_equilibrium(
     q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, unit: float, most: int
 ) -> tuple[int, int, int]:
@@ -127,53 +193,50 @@ def find_equilibrium(
     Returns how it ended (STABLE, UNSTABLE, LIMIT, NOT_FOUND), the iterations (at most ``most``), and the
     number of unstable directions.
     """
-    n, dofs = q.shape
-    chain = np.empty((n, CHAIN_COLUMNS))
-    residual, descent, change, trial = np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
-    pivots = np.empty((n, PIVOT_COLUMNS))
+    chain = np.empty((q.shape[0], CHAIN_COLUMNS))
+    residual, descent = np.empty_like(q), np.empty_like(q)
+    change, trial = np.empty_like(q), np.empty_like(q)
+    pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
     potential, scale, clearance = pose_sweep(q, tension, segments, disks, chain)
+    negative = 0
     for iteration in range(1, most + 1):
         residual_sweep(disks, chain, residual)
         negative = int(eliminate_sweep(segments, disks, chain, residual, descent, pivots))
         substitute_sweep(chain, descent, change)
-        single, turned = measure(change, unit)
+        single, turn = measure(change, unit)
         slope, curvature = inner(residual, change), 0.0
-        if single < 1e-8:
-            if negative == 0:
-                advance(q, 1.0, change, q)
-                return STABLE, iteration, 0
+        if single < AT_REST and negative == 0:
+            advance(q, 1.0, change, q)
+            return STABLE, iteration, 0
+        if single < AT_REST:
             curvature = saddle_direction(unit, chain, pivots, descent, change)
             slope = inner(residual, change)
             if slope > 0.0:
                 advance(change, -2.0, change, change)
                 slope = -slope
-            turned = 0.0
-        factor = min(1.0, 1.0 / max(turned, 1e-30))
-        rounding = curvature == 0.0 and slope > -1e-11 * scale
-        lower, lower_scale, clearance = potential, scale, 0.0
-        for _halving in range(60):
-            advance(q, factor, change, trial)
-            lower, lower_scale, clearance = pose_sweep(trial, tension, segments, disks, chain)
-            promised = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
-            if clearance > 0.0 and (rounding or lower <= potential + promised):
-                break
-            factor *= 0.5
-            clearance = 0.0
-        if clearance <= 0.0:
-            return (UNSTABLE, iteration, negative) if curvature < 0.0 else (NOT_FOUND, iteration, negative)
-        while negative > 0 and factor * turned < 1.0 and not rounding and factor < 1e6:
-            advance(q, 2.0 * factor, change, trial)
-            further, further_scale, clear = pose_sweep(trial, tension, segments, disks, chain)
-            if clear <= 0.0 or further >= lower:
-                break
-            factor *= 2.0
-            lower, lower_scale, clearance = further, further_scale, clear
+            turn = 0.1
+        fall_from = potential
+        if curvature == 0.0 and slope > -ROUNDING * scale:
+            fall_from = potential + scale  # the fall is below rounding: only the limits are checked
+        factor, seen = shorten(
+            q,
+            change,
+            min(1.0, LARGEST_TURN / max(turn, 1e-30)),
+            (fall_from, slope, curvature),
+            tension,
+            segments,
+            disks,
+            chain,
+            trial,
+        )
+        if factor == 0.0:
+            return (UNSTABLE if curvature < 0.0 else NOT_FOUND), iteration, negative
         if negative > 0:
-            advance(q, factor, change, trial)
-            lower, lower_scale, clearance = pose_sweep(trial, tension, segments, disks, chain)
-        advance(trial, 0.0, change, q)
-        potential, scale = lower, lower_scale
-        if clearance < 1e-6:
+            largest = max(LARGEST_TURN / max(turn, 1e-30), 1.0)
+            seen = lengthen(q, change, factor, largest, seen, tension, segments, disks, chain, trial)
+        q[:] = trial
+        potential, scale, clearance = seen
+        if clearance < AT_LIMIT:
             return LIMIT, iteration, negative
     return NOT_FOUND, most, negative
 
@@ -181,8 +244,10 @@ def find_equilibrium(
 def examine(
     q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, pose: np.ndarray
 ) -> tuple[float, float, float]:
-    """Poses of the disks into ``pose``, shape (n, 3); returns elastic and gravity energy and the largest
-    residual, N or N m."""
+    """Poses of the disks into ``pose``, shape (n, 3).
+
+    Returns elastic energy, gravity energy (J) and the largest residual (N or N m).
+    """
     chain, residual = np.empty((q.shape[0], CHAIN_COLUMNS)), np.empty_like(q)
     pose_sweep(q, tension, segments, disks, chain)
     residual_sweep(disks, chain, residual)

@@ -8,9 +8,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A named physical quantity; ``unit`` is SI, "1" where there is none."""
+    """A named physical quantity; ``unit`` is SI, "1" where there is none.
+
+    ``letter`` stands for it in printed equations; it is the name itself where there is no customary one.
+    """
 
     name: str
+    letter: str
     unit: str
     meaning: str
 
@@ -22,63 +26,63 @@ class Quantity:
 
 
 _TABLE = """
-disks                    | 1       | number of disks, and of segments
-disk_spacing             | m       | undeformed distance between neighbouring disks, along the core
-youngs_modulus           | Pa      | Young's modulus E of the core
-core_radius              | m       | radius of a round core; sets area and second_moment
-area                     | m^2     | cross-section area A of the core
-second_moment            | m^4     | second moment of area J of the core about the bending axis
-disk_mass                | kg      | mass of a disk, with the core around it
-disk_inertia             | kg m^2  | moment of inertia of a disk about an in-plane diameter
-reference_curvature      | 1/m     | curvature of the unloaded core
+disks                | n     | 1      | number of disks, and of segments
+disk_spacing         | L_0   | m      | undeformed distance between neighbouring disks, along the core
+youngs_modulus       | E     | Pa     | Young's modulus E of the core
+core_radius          | -     | m      | radius of a round core; sets area and second_moment
+area                 | A     | m^2    | cross-section area A of the core
+second_moment        | J     | m^4    | second moment of area J of the core about the bending axis
+disk_mass            | m     | kg     | mass of a disk, with the core around it
+disk_inertia         | I     | kg m^2 | moment of inertia of a disk about an in-plane diameter
+reference_curvature  | k_0   | 1/m    | curvature of the unloaded core
 
-rest_length              | m       | undeformed length L0 of a segment
-bending_stiffness        | N m^2   | E J of the core
-axial_stiffness          | N       | E A of the core
-hole_offset              | m       | cable hole's place along the disk's y axis
-anchor                   | 1       | number of the disk where a cable ends
-cable_passes             | 1       | 1 on segments that a cable runs along, 0 beyond its anchor
-tension                  | N       | tension of a cable
-cable_length             | m       | length of a cable from hole to hole over one segment
-acceleration             | m/s^2   | acceleration of gravity, a vector in the plane
-gravity_x                | m/s^2   | acceleration of gravity along x
-gravity_y                | m/s^2   | acceleration of gravity along y
-force                    | N       | dead force on a disk, a vector in the plane
-moment                   | N m     | moment on a disk, positive counter-clockwise
-load_force_x             | N       | sum of the dead forces on a disk, along x
-load_force_y             | N       | sum of the dead forces on a disk, along y
-load_moment              | N m     | sum of the moments on a disk
-retardation_time         | s       | Kelvin-Voigt viscosity over Young's modulus, eta / E
+rest_length          | L_0   | m      | undeformed length L0 of a segment
+bending_stiffness    | EJ    | N m^2  | E J of the core
+axial_stiffness      | EA    | N      | E A of the core
+hole_offset          | r     | m      | cable hole's place along the disk's y axis
+anchor               | -     | 1      | number of the disk where a cable ends
+cable_passes         | b     | 1      | 1 on segments that a cable runs along, 0 beyond its anchor
+tension              | tau   | N      | tension of a cable
+cable_length         | l     | m      | length of a cable from hole to hole over one segment
+acceleration         | -     | m/s^2  | acceleration of gravity, a vector in the plane
+gravity_x            | g_x   | m/s^2  | acceleration of gravity along x
+gravity_y            | g_y   | m/s^2  | acceleration of gravity along y
+force                | -     | N      | dead force on a disk, a vector in the plane
+moment               | -     | N m    | moment on a disk, positive counter-clockwise
+load_force_x         | F_x   | N      | sum of the dead forces on a disk, along x
+load_force_y         | F_y   | N      | sum of the dead forces on a disk, along y
+load_moment          | M     | N m    | sum of the moments on a disk
+retardation_time     | t_r   | s      | Kelvin-Voigt viscosity over Young's modulus, eta / E
 
-time                     | s       | time
-segment                  | 1       | number of a segment, from the base
-disk                     | 1       | number of a disk, from the base
-cable                    | 1       | name of a cable
-point                    | 1       | number of an equilibrium in its sequence
-bend_angle               | rad     | angle between the two ends of a segment, curvature times length
-elongation               | m       | length of a segment less its undeformed length
-bend_angle_rate          | rad/s   | time derivative of the bend angle
-elongation_rate          | m/s     | time derivative of the elongation
-curvature                | 1/m     | curvature k of a segment
-length                   | m       | length L of a segment
-disk_x                   | m       | x of a disk's centre
-disk_y                   | m       | y of a disk's centre
-disk_theta               | rad     | angle of a disk's normal against the x axis
-stable                   | 1       | 1 where the equilibrium is stable
-unstable_directions      | 1       | number of independent directions in which an equilibrium is unstable
-residual                 | N       | largest unbalanced generalized force, N or N m
-kinetic_energy           | J       | kinetic energy of the masses
-elastic_energy           | J       | energy stored in the core by bending and extension
-gravity_energy           | J       | potential energy of the masses, zero at the base's height
-input_power              | W       | power of the cables and of the loads on disks
-dissipated_power         | W       | power lost to damping
-input_work               | J       | time integral of the input power since the start
-dissipated_energy        | J       | time integral of the dissipated power since the start
+time                 | -     | s      | time
+segment              | -     | 1      | number of a segment, from the base
+disk                 | -     | 1      | number of a disk, from the base
+cable                | -     | 1      | name of a cable
+point                | -     | 1      | number of an equilibrium in its sequence
+bend_angle           | phi   | rad    | angle between the two ends of a segment, curvature times length
+elongation           | e     | m      | length of a segment less its undeformed length
+bend_angle_rate      | phi'  | rad/s  | time derivative of the bend angle
+elongation_rate      | e'    | m/s    | time derivative of the elongation
+curvature            | k     | 1/m    | curvature k of a segment
+length               | L     | m      | length L of a segment
+disk_x               | -     | m      | x of a disk's centre
+disk_y               | -     | m      | y of a disk's centre
+disk_theta           | -     | rad    | angle of a disk's normal against the x axis
+stable               | -     | 1      | 1 where the equilibrium is stable
+unstable_directions  | -     | 1      | number of independent directions in which an equilibrium is unstable
+residual             | -     | N      | largest unbalanced generalized force, N or N m
+kinetic_energy       | -     | J      | kinetic energy of the masses
+elastic_energy       | -     | J      | energy stored in the core by bending and extension
+gravity_energy       | -     | J      | potential energy of the masses, zero at the base's height
+input_power          | -     | W      | power of the cables and of the loads on disks
+dissipated_power     | -     | W      | power lost to damping
+input_work           | -     | J      | time integral of the input power since the start
+dissipated_energy    | -     | J      | time integral of the dissipated power since the start
 """
 
 QUANTITIES: dict[str, Quantity] = {
-    name: Quantity(name, unit, meaning)
-    for name, unit, meaning in (
+    name: Quantity(name, name if letter == "-" else letter, unit, meaning)
+    for name, letter, unit, meaning in (
         (cell.strip() for cell in line.split("|")) for line in _TABLE.splitlines() if line.strip()
     )
 }

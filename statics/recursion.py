@@ -12,7 +12,6 @@ The chain's second derivatives act through the reaction f = -sum P beyond the se
     f . R d_qq,   f . z x R d_q,   -f . R d
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -63,7 +62,7 @@ class Reach:
 
 
 def turned(vector: sp.Matrix) -> sp.Matrix:
-    """z x vector, in the plane."""
+    """Z x vector, in the plane."""
     return sp.Matrix([-vector[1], vector[0]])
 
 
@@ -81,7 +80,10 @@ def reach_of(forces: SceneForces, trace: Trace | None = None) -> Reach:
     d = segment.displacement
     d_q = [d.diff(q) for q in segment.coordinates]
     second = {
-        (a, b): named(f"reach_{a}{b}", d_q[a].diff(segment.coordinates[b])) for a in dofs for b in dofs if a <= b
+        (a, b): named(f"reach_{a}{b}", d_q[a].diff(segment.coordinates[b]))
+        for a in dofs
+        for b in dofs
+        if a <= b
     }
     return Reach(
         named("reach", d),
@@ -208,7 +210,9 @@ def observe_step(forces: SceneForces) -> Step:
         "Outwards, at rest: poses of the disks, elastic and gravity energy.",
         ("q", "segments", "disks", "pose"),
         trace,
-        results={name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in energies.items()},
+        results={
+            name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in energies.items()
+        },
         carried=frame | pose,
         stores={"pose": [at_disk[coordinate] for coordinate in forces.disk.coordinates]},
     )
@@ -219,7 +223,8 @@ def residual_step(forces: SceneForces) -> Step:
     trace = Trace()
     reach = reach_of(forces)
     carried = sp.Matrix([symbol(name) for name in ("force_x", "force_y", "torque")])
-    reaction = trace.let("reaction", carried - _named("disk_force", forces.on_disk.force))
+    wrench = carried - _named("disk_force", forces.on_disk.force)
+    reaction = sp.Matrix([trace.name(f"reaction_{row}", value) for row, value in enumerate(wrench)])
     residual = reach.partials.T * reaction - _named("segment_force", forces.on_segment.force)
     at_near = reach.transition.T * reaction
     return Step(
@@ -305,7 +310,9 @@ def _pivot_inverse(trace: Trace, A: sp.Matrix, weights: Weights) -> tuple[sp.Mat
     names = [f"inverse_{r}{c}" for r in range(dofs) for c in range(r, dofs)]
     units = [symbol("rest_length")] if dofs == 2 else []
     *inverse, pivot_scale, negative = trace.call(
-        f"positive_inverse_{dofs}", [*entries, *units, symbol("pivot_scale")], [*names, "pivot_size", "negative"]
+        f"positive_inverse_{dofs}",
+        [*entries, *units, symbol("pivot_scale")],
+        [*names, "pivot_size", "negative"],
     )
     by_name = dict(zip(names, inverse, strict=True))
     matrix = sp.Matrix(dofs, dofs, lambda r, c: by_name[f"inverse_{min(r, c)}{max(r, c)}"])

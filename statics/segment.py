@@ -54,7 +54,7 @@ class SegmentSymbols:
 
     @cached_property
     def half_angle(self) -> Any:
-        """h = phi / 2."""
+        """H = phi / 2."""
         return self.bend_angle / 2
 
     @cached_property
@@ -72,7 +72,9 @@ class SegmentSymbols:
     def _cable(self, number: int) -> CableSymbols:
         hole_offset = symbol(f"hole_offset_{number}")
         tension = symbol(f"tension_{number}") * symbol(f"cable_passes_{number}")
-        return CableSymbols(tension, Sigma(0, self.half_angle) * (self.length - self.bend_angle * hole_offset))
+        return CableSymbols(
+            tension, Sigma(0, self.half_angle) * (self.length - self.bend_angle * hole_offset)
+        )
 
 
 class DiskSymbols:

@@ -14,6 +14,7 @@ from math import factorial, prod
 from typing import Any
 
 import sympy as sp
+from sympy.core.function import ArgumentIndexError
 
 SERIES_TERMS = 11
 """Terms of the power series used for |x| < 2; there they reach 5e-16."""
@@ -28,7 +29,7 @@ class Sigma(sp.Function):
         """Derivative with respect to x. DLMF 10.51.3."""
         n, x = self.args
         if argindex != 2:
-            raise sp.ArgumentIndexError(self, argindex)
+            raise ArgumentIndexError(self, argindex)
         return -x * Sigma(n + 1, x)
 
 
@@ -47,15 +48,28 @@ def ladder_source(order: int) -> str:
     there; beyond it upwards from sine and cosine.
     """
     names = ["sigma_minus_1", *(f"sigma_{n}" for n in range(order + 1))]
-    lines = [f"def sigma_ladder_{order}(x):", f'    """{", ".join(names)} at x."""', "    x2 = x * x", "    if x2 < 4.0:"]
-    for n in (order, order - 1):
-        lines.append(f"        {names[n + 1]} = {_horner(series_coefficients(n))}")
-    for n in range(order - 1, -1, -1):
-        lines.append(f"        {names[n]} = {_times(2 * n + 1, names[n + 1])} - x2 * {names[n + 2]}")
-    lines += ["    else:", "        sigma_minus_1 = math.cos(x)", "        sigma_0 = math.sin(x) / x"]
-    for n in range(order):
-        lines.append(f"        {names[n + 2]} = ({_times(2 * n + 1, names[n + 1])} - {names[n]}) / x2")
-    lines.append(f"    return {', '.join(names)}")
+    series = [f"        {names[n + 1]} = {_horner(series_coefficients(n))}" for n in (order, order - 1)]
+    down = [
+        f"        {names[n]} = {_times(2 * n + 1, names[n + 1])} - x2 * {names[n + 2]}"
+        for n in range(order - 1, -1, -1)
+    ]
+    up = [
+        f"        {names[n + 2]} = ({_times(2 * n + 1, names[n + 1])} - {names[n]}) / x2"
+        for n in range(order)
+    ]
+    lines = [
+        f"def sigma_ladder_{order}(x):",
+        f'    """{", ".join(names)} at x."""',
+        "    x2 = x * x",
+        "    if x2 < 4.0:",
+        *series,
+        *down,
+        "    else:",
+        "        sigma_minus_1 = math.cos(x)",
+        "        sigma_0 = math.sin(x) / x",
+        *up,
+        f"    return {', '.join(names)}",
+    ]
     return "\n".join(lines)
 
 

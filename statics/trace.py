@@ -20,13 +20,16 @@ class Trace:
         """Name a scalar or every entry of a matrix (``name_00``, ``name_01``, ...); return the names."""
         if isinstance(value, sp.MatrixBase):
             return sp.Matrix(
-                *value.shape, lambda row, column: self.let(_entry(name, value, row, column), value[row, column])
+                *value.shape,
+                lambda row, column: self.let(_entry(name, value, row, column), value[row, column]),
             )
         value = sp.sympify(value)
-        if value.is_Atom:
-            return value
+        return value if value.is_Atom else self.name(name, value)
+
+    def name(self, name: str, value: Any) -> sp.Symbol:
+        """Name a scalar even if it is a number or a symbol: later programs ask for it by that name."""
         symbol = sp.Symbol(name, real=True)
-        self.lines.append(((symbol,), value))
+        self.lines.append(((symbol,), sp.sympify(value)))
         return symbol
 
     def symmetric(self, name: str, value: sp.Matrix) -> sp.Matrix:
@@ -58,7 +61,9 @@ class Trace:
     def change_of(value: Any, change: Mapping[sp.Symbol, Any]) -> Any:
         """First-order change of an expression from the changes of its symbols."""
         value = sp.sympify(value)
-        return sp.Add(*(value.diff(s) * change[s] for s in sorted(value.free_symbols, key=str) if s in change))
+        return sp.Add(
+            *(value.diff(s) * change[s] for s in sorted(value.free_symbols, key=str) if s in change)
+        )
 
 
 def _entry(name: str, matrix: sp.MatrixBase, row: int, column: int) -> str:

@@ -31,7 +31,7 @@ class Monitor:
     """Watches a run over all of its spans; ``outcome`` is set when a bound is broken.
 
     ``inspect(t, y)`` returns the outcome and the words for it where a state is not acceptable, else
-    None; ``progress(t)`` is called after each step.
+    None; ``progress(t)`` is called after each step. ``reached`` is the last acceptable time and state.
     """
 
     inspect: Callable[[float, np.ndarray], tuple[Outcome, str] | None]
@@ -40,6 +40,7 @@ class Monitor:
     steps: int = 0
     started: float = field(default_factory=time.monotonic)
     interrupted: bool = False
+    reached: tuple[float, np.ndarray] = (0.0, np.zeros(0))
     outcome: Outcome | None = None
     message: str = ""
 
@@ -52,11 +53,12 @@ class Monitor:
     def after_step(self, t: float, y: np.ndarray) -> str | None:
         """Count an accepted step and check it; a text says that it must be the last."""
         self.steps += 1
-        if self.interrupted:
-            return self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
         found = self.inspect(t, y)
         if found is not None:
             return self.stop(*found)
+        self.reached = (t, y)
+        if self.interrupted:
+            return self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
         if self.steps >= self.budget.steps:
             return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.steps} steps taken by t = {t:.6g} s")
         if time.monotonic() - self.started > self.budget.seconds:

@@ -45,10 +45,15 @@ class DiskLoads:
         ]
 
     def columns(self, arm: Arm) -> dict[str, np.ndarray]:
-        """Sums over the loads of each disk, shape (disks,). Raises ``InputError`` for a disk beyond the arm."""
+        """Sums over the loads of each disk, shape (disks,).
+
+        Raises ``InputError`` for a disk beyond the arm.
+        """
         total = np.zeros((3, arm.disks))
         for load in self.loads:
             if load.disk > arm.disks:
-                raise InputError(f"load on disk {load.disk}: beyond the arm. Allowed: disks 1 to {arm.disks}.")
+                raise InputError(
+                    f"load on disk {load.disk}: beyond the arm. Allowed: disks 1 to {arm.disks}."
+                )
             total[:, load.disk - 1] += (*load.force, load.moment)
         return dict(zip(self.quantities, total, strict=True))

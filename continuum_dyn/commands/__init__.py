@@ -1,0 +1,1 @@
+"""The commands, one file each. They import what is heavy only when they are called."""

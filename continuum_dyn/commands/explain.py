@@ -1,0 +1,123 @@
+"""``continuum-dyn explain``: what a scenario simulates, as equations."""
+
+from pathlib import Path
+from textwrap import fill
+from typing import Annotated, Any
+
+import typer
+
+from statics.quantities import QUANTITIES
+
+_DISK_LETTERS = {
+    "velocity_x": "v_x",
+    "velocity_y": "v_y",
+    "angular_velocity": "omega",
+    "acceleration_x": "a_x",
+    "acceleration_y": "a_y",
+    "angular_acceleration": "alpha",
+}
+
+
+def explain(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario file (TOML).", show_default=False)],
+    latex: Annotated[bool, typer.Option("--latex", help="Equations as LaTeX.")] = False,
+) -> None:
+    """Show the effects in play, the coordinates, and the equations of one segment and one disk."""
+    from continuum_dyn.scenario import load_scenario
+
+    scenario = load_scenario(file)
+    scene = scenario.scene
+    typer.echo(f"{scenario.title}\n")
+    per_segment = len(scene.coordinates)
+    typer.echo(
+        f"{scene.arm.disks} segments, {per_segment * scene.arm.disks} coordinates: "
+        f"{' and '.join(scene.coordinates)} of each segment.\n"
+    )
+    typer.echo("Effects in play")
+    for effect in scene.effects:
+        typer.echo(f"  {effect.name:<17} on each {effect.place:<8} {effect.source}")
+    _print_equations(scene, latex)
+
+
+def _print_equations(scene: Any, latex: bool) -> None:
+    from continuum_dyn.virtual_power import derive_dynamics
+    from statics.virtual_work import collect
+
+    forces = derive_dynamics(scene)
+    write = _latex if latex else _text
+    used: set[str] = set()
+    typer.echo("\nOne segment: its far end seen from its near disk (Eq. 11)")
+    for name, value in zip("xy", forces.segment.displacement, strict=True):
+        typer.echo(write(name, value, used))
+    for place, at in (("segment", forces.segment), ("disk", forces.disk)):
+        groups = collect(scene.effects, place, at)
+        typer.echo(f"\nOne {place}: loads P and the displacements r they work along (Eq. 1)")
+        for effect, pairs in groups:
+            typer.echo(f"  {effect.name}")
+            for pair in pairs:
+                typer.echo(write("P", pair.load, used))
+                typer.echo(write("r", pair.displacement, used))
+    typer.echo("\nGeneralized forces of one segment, its own loads: Q = sum of P . dr'/du (Eq. 5)")
+    for coordinate, value in zip(forces.segment.coordinates, forces.on_segment.force, strict=True):
+        typer.echo(write(f"Q_{_letter(coordinate.name)}", value, used))
+    typer.echo(
+        "\nMotion: the sum of P . dr'/du over all segments and disks is zero for each rate u;"
+        "\nthe disks' loads reach a segment through the chain. At rest: the same with dr/dq."
+    )
+    _print_letters(used)
+
+
+def _print_letters(used: set[str]) -> None:
+    typer.echo("\nLetters")
+    for name, quantity in QUANTITIES.items():
+        if name in used and quantity.letter != name:
+            typer.echo(_wrapped(f"{quantity.letter:<4} {name} ({quantity.unit}): {quantity.meaning}"))
+    typer.echo(_wrapped("h    phi / 2"))
+    typer.echo(
+        _wrapped(
+            "sigma_n(h) = j_n(h) / h^n, spherical Bessel functions: sigma_-1 = cos h, sigma_0 = sin(h)/h"
+        )
+    )
+
+
+def _wrapped(text: str) -> str:
+    return fill(text, 79, initial_indent="  ", subsequent_indent=" " * 7)
+
+
+def _letter(name: str) -> str:
+    if name in _DISK_LETTERS:
+        return _DISK_LETTERS[name]
+    stem, _, number = name.rpartition("_")
+    if number.isdigit() and stem in QUANTITIES:
+        return f"{QUANTITIES[stem].letter}_{number}"
+    return QUANTITIES[name].letter if name in QUANTITIES else name
+
+
+def _lettered(value: Any, used: set[str], sigma: str) -> Any:
+    """The expression in the customary letters; ``sigma`` is the pattern for sigma_n(h), h = phi / 2."""
+    import sympy as sp
+
+    from statics.sigma import Sigma
+
+    if isinstance(value, tuple):
+        return tuple(_lettered(part, used, sigma) for part in value)
+    value = sp.sympify(value)
+    used |= {s.name if s.name in QUANTITIES else s.name.rpartition("_")[0] for s in value.free_symbols}
+    calls = {call: sp.Symbol(sigma.format(n=call.args[0])) for call in value.atoms(Sigma)}
+    letters = {s: sp.Symbol(_letter(s.name)) for s in value.free_symbols}
+    return value.xreplace(calls).xreplace(letters)
+
+
+def _text(name: str, value: Any, used: set[str]) -> str:
+    from sympy import sstr
+
+    expression = sstr(_lettered(value, used, "sigma_{n}(h)"))
+    return fill(f"{name} = {expression}", 79, initial_indent="    ", subsequent_indent=" " * 8)
+
+
+def _latex(name: str, value: Any, used: set[str]) -> str:
+    import sympy as sp
+
+    rates = {sp.Symbol("phi'"): r"\dot{\phi}", sp.Symbol("e'"): r"\dot{e}"}
+    expression = sp.latex(_lettered(value, used, r"\sigma_{{{n}}}(h)"), symbol_names=rates)
+    return f"    {sp.latex(sp.Symbol(name))} = {expression}"

@@ -1,0 +1,197 @@
+"""``continuum-dyn run``: answer scenarios and log them."""
+
+import json
+import time
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from statics.errors import InputError, LogError
+
+if TYPE_CHECKING:
+    from continuum_dyn.simulation import Run
+    from continuum_dyn.study import Scenario
+
+MAX_ROWS = 20
+
+
+def run(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="Scenario files (TOML).", show_default=False)
+    ],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the logs.")] = Path("logs"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
+) -> None:
+    """Simulate scenarios and log them.
+
+    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. Exit status: 0 answered ("not settled" is an
+    answer), 1 not answered (no stable equilibrium, geometric limit, diverged, budget exceeded),
+    2 bad input, 130 interrupted.
+    """
+    scenarios = _load(files)
+    _make_folder(out)
+    statuses = []
+    for path, scenario in scenarios:
+        report = _answer(path, scenario, out, quiet=as_json)
+        if as_json:
+            typer.echo(json.dumps(report["record"]))
+        else:
+            _show(report)
+        statuses.append(report["run"].outcome.exit_status)
+        if statuses[-1] > 1:
+            break
+    raise typer.Exit(max(statuses))
+
+
+def _load(files: list[Path]) -> "list[tuple[Path, Scenario]]":
+    """All scenarios, checked before the first one runs."""
+    from continuum_dyn.scenario import load_scenario
+
+    for stem, count in Counter(path.stem for path in files).items():
+        if count > 1:
+            raise InputError(f"{count} files are named '{stem}'; their logs would overwrite each other.")
+    return [(path, load_scenario(path)) for path in files]
+
+
+def _make_folder(folder: Path) -> None:
+    probe = folder / ".writable"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise LogError(
+            f"cannot write to the folder {folder}: {error.strerror}. Name another with --out."
+        ) from error
+
+
+def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[str, Any]:
+    from continuum_dyn.record import read_log, write_log
+    from continuum_dyn.simulation import simulate
+    from continuum_dyn.views import rerun_view
+
+    started = time.perf_counter()
+    with _progress(scenario.title, quiet) as progress:
+        result = simulate(scenario, progress)
+    log, recording = out / f"{path.stem}.h5", out / f"{path.stem}.rrd"
+    write_log(result, log)
+    rerun_view.save(read_log(log), recording)
+    wall_time = time.perf_counter() - started
+    return {"run": result, "log": log, "record": _record(path, result, log, recording, wall_time)}
+
+
+def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: float) -> dict[str, Any]:
+    """What ``--json`` prints; ``tip`` is x, y (m), theta (rad), times are in s, ``static_gap`` in m."""
+    record: dict[str, Any] = {
+        "scenario": str(path),
+        "title": result.scenario.title,
+        "outcome": str(result.outcome),
+        "message": result.message,
+        "tip": result.tip,
+        "solve_time": result.solve_time,
+        "wall_time": wall_time,
+        "log": str(log),
+        "recording": str(recording),
+    }
+    if result.trajectory is not None:
+        record["static_gap"] = result.static_gap
+        record["ledger_gap"] = (
+            float(abs(result.trajectory.ledger_gap).max()) if result.trajectory.time.size else None
+        )
+        record |= result.trajectory.counters
+    else:
+        record["equilibria"] = [
+            {"tension": point.tension.tolist(), "tip": point.tip, "stable": point.stable}
+            for point in result.equilibria
+            if point.found
+        ]
+    return record
+
+
+@contextmanager
+def _progress(title: str, quiet: bool) -> Iterator[Any]:
+    """A progress bar on work that takes longer than a second; none in pipes."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield None
+        return
+    started = time.monotonic()
+    with Progress(console=console, transient=True, auto_refresh=False) as bar:
+        task = bar.add_task(title, total=1.0, visible=False)
+        latest = [started + 0.9]
+
+        def update(fraction: float) -> None:
+            now = time.monotonic()
+            if now - latest[0] > 0.1:
+                latest[0] = now
+                bar.update(task, completed=fraction, visible=True, refresh=True)
+
+        yield update
+
+
+def _show(report: dict[str, Any]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    result: Run = report["run"]
+    record = report["record"]
+    table = Table(
+        title=result.scenario.title, title_justify="left", show_header=False, box=None, pad_edge=False
+    )
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column(overflow="fold")
+    table.add_row("outcome", f"[bold]{result.outcome}[/bold]")
+    if result.message:
+        table.add_row("", result.message)
+    if result.tip is not None:
+        table.add_row("tip", _pose(result.tip))
+    if result.static_gap is not None:
+        table.add_row("gap to static", f"{_length(result.static_gap)} from the final equilibrium")
+    if result.trajectory is not None:
+        counters = ", ".join(f"{count} {name}" for name, count in result.trajectory.counters.items())
+        table.add_row("solver", f"{result.scenario.solver.method}: {counters}")
+    table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
+    table.add_row("log", f"{report['log']}  (play it: continuum-dyn play {report['log']})")
+    console = Console(highlight=False)
+    console.print(table)
+    points = [point for point in result.equilibria if point.found]
+    if result.trajectory is None and len(points) > 1:
+        console.print(_ramp_table(result, points))
+    console.print()
+
+
+def _ramp_table(result: "Run", points: list[Any]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for name in result.scenario.scene.arm.cable_names:
+        table.add_column(f"{name} (N)", justify="right")
+    for name in ("tip x (mm)", "tip y (mm)", "theta (rad)", "stable"):
+        table.add_column(name, justify="right")
+    stride = -(-len(points) // MAX_ROWS)
+    for point in points[::stride]:
+        x, y, theta = point.tip
+        tensions = (f"{tau:g}" for tau in point.tension)
+        table.add_row(
+            *tensions, f"{x * 1e3:.4f}", f"{y * 1e3:.4f}", f"{theta:.5f}", "yes" if point.stable else "no"
+        )
+    return table
+
+
+def _pose(tip: tuple[float, float, float]) -> str:
+    return f"x {tip[0] * 1e3:.4f} mm, y {tip[1] * 1e3:.4f} mm, theta {tip[2]:.5f} rad"
+
+
+def _length(value: float) -> str:
+    """A length in the unit that reads best."""
+    for unit, size in (("m", 1.0), ("mm", 1e-3), ("um", 1e-6)):
+        if value >= size:
+            return f"{value / size:.3g} {unit}"
+    return f"{value / 1e-9:.3g} nm"

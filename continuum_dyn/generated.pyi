@@ -1,0 +1,50 @@
+"""What a generated motion kernel offers to ``equations_of_motion`` beside what every kernel does."""
+
+import numpy as np
+
+Carried = tuple[float, ...]
+
+CHAIN_COLUMNS: int
+MOTION_START: Carried
+MOTION_TANGENT_START: Carried
+OBSERVE_START: Carried
+RESIDUAL_TANGENT_START: Carried
+
+def motion_step(
+    i: int,
+    carried: Carried,
+    q: np.ndarray,
+    u: np.ndarray,
+    w: np.ndarray,
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+) -> Carried: ...
+def motion_tangent_step(
+    i: int,
+    carried: Carried,
+    q: np.ndarray,
+    u: np.ndarray,
+    w: np.ndarray,
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    q_change: np.ndarray,
+    u_change: np.ndarray,
+) -> Carried: ...
+def residual_tangent_step(
+    i: int, carried: Carried, disks: np.ndarray, chain: np.ndarray, residual_change: np.ndarray
+) -> Carried: ...
+def observe_step(
+    i: int,
+    carried: Carried,
+    q: np.ndarray,
+    u: np.ndarray,
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    pose: np.ndarray,
+    velocity: np.ndarray,
+) -> Carried: ...

@@ -1,0 +1,75 @@
+"""A motion at its samples."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from continuum_dyn.dynamics import Dynamics
+from statics.equilibria import shape_of
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A motion at its samples; SI units.
+
+    ``time`` and energies have shape (samples,), ``tension`` (samples, cables), the rest
+    (samples, disks). ``elongation`` and its rate are None in a scene without extension. ``ledger`` holds
+    energies (J), powers (W), and the integrals ``input_work`` and ``dissipated_energy`` (J) by glossary name.
+    ``counters`` are the solver's: steps, evaluations, Jacobians, decompositions.
+    """
+
+    time: np.ndarray
+    tension: np.ndarray
+    bend_angle: np.ndarray
+    bend_angle_rate: np.ndarray
+    elongation: np.ndarray | None
+    elongation_rate: np.ndarray | None
+    curvature: np.ndarray
+    length: np.ndarray
+    disk_x: np.ndarray
+    disk_y: np.ndarray
+    disk_theta: np.ndarray
+    tip_speed: np.ndarray
+    ledger: dict[str, np.ndarray]
+    counters: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def tip(self) -> tuple[float, float, float]:
+        """x, y (m) and theta (rad) of the last disk at the last sample."""
+        return float(self.disk_x[-1, -1]), float(self.disk_y[-1, -1]), float(self.disk_theta[-1, -1])
+
+    @property
+    def ledger_gap(self) -> np.ndarray:
+        """Energy stored since the start, less work put in, plus energy dissipated, shape (samples,), J.
+
+        Zero up to the integrator's error.
+        """
+        parts = ("kinetic_energy", "elastic_energy", "gravity_energy")
+        stored = np.sum([self.ledger[name] for name in parts], axis=0)
+        return stored - stored[0] - self.ledger["input_work"] + self.ledger["dissipated_energy"]
+
+
+def trajectory_of(
+    dynamics: Dynamics, times: np.ndarray, states: np.ndarray, tension: np.ndarray, counters: dict[str, int]
+) -> Trajectory:
+    """The trajectory of states (samples, size) at those times under tensions (samples, cables)."""
+    arm = dynamics.scene.arm
+    q, u = dynamics.split(states)
+    extends = dynamics.dofs == 2
+    elongation = q[:, :, 1] if extends else None
+    seen = dynamics.observe(states, tension)
+    return Trajectory(
+        time=times,
+        tension=tension,
+        bend_angle=q[:, :, 0],
+        bend_angle_rate=u[:, :, 0],
+        elongation=elongation,
+        elongation_rate=u[:, :, 1] if extends else None,
+        **shape_of(arm, q[:, :, 0], elongation),
+        disk_x=seen.disk_x,
+        disk_y=seen.disk_y,
+        disk_theta=seen.disk_theta,
+        tip_speed=seen.tip_speed,
+        ledger=seen.ledger | {"input_work": states[:, -2], "dissipated_energy": states[:, -1]},
+        counters=counters,
+    )

@@ -1,0 +1,89 @@
+"""Figures made from logs."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from continuum_dyn.record import Log
+from statics.quantities import QUANTITIES
+
+ARC_POINTS = 13
+
+
+def backbone(bend_angle: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Points along the core, base first, from shapes (disks,) in rad and m; shape (points, 2), m.
+
+    Each segment is a circular arc: a chord at half its angle (Rone 2012, Eq. 11).
+    """
+    along = np.linspace(0.0, 1.0, ARC_POINTS)[1:]
+    theta = np.concatenate([[0.0], np.cumsum(bend_angle)])[:-1]
+    half = 0.5 * bend_angle[:, None] * along
+    chord = length[:, None] * along * np.sinc(half / np.pi)
+    arcs = chord * np.exp(1j * (theta[:, None] + half))
+    starts = np.concatenate([[0.0], np.cumsum(arcs[:, -1])])[:-1]
+    points = np.concatenate([[0.0], (starts[:, None] + arcs).ravel()])
+    return np.column_stack([np.real(points), np.imag(points)])
+
+
+def step_response(log: Log) -> Figure:
+    """Shapes on the way up, the tip against its equilibrium, and the energies of a step response."""
+    figure = Figure(figsize=(9.0, 6.2), layout="constrained")
+    axes: dict[str, Any] = figure.subplot_mosaic(
+        [["shape", "shape"], ["tip", "energy"]], height_ratios=[1.0, 1.4]
+    )
+    _draw_shapes(axes["shape"], log)
+    _draw_tip(axes["tip"], log)
+    _draw_energies(axes["energy"], log)
+    figure.suptitle(log.title)
+    return figure
+
+
+def _draw_shapes(axes: Any, log: Log) -> None:
+    motion, rest = log.trajectory, log.equilibria
+    for rank, sample in enumerate(shown := _on_the_way_up(motion["disk_y"][:, -1])):
+        points = 1e3 * backbone(motion["bend_angle"][sample], motion["length"][sample])
+        grey = str(0.75 - 0.6 * rank / (len(shown) - 1))
+        axes.plot(*points.T, color=grey, lw=1.6)
+        axes.plot(*points[:: ARC_POINTS - 1].T, "o", color=grey, ms=3.5)
+        label = f"{motion['time'][sample] * 1e3:.0f} ms"
+        axes.annotate(label, points[-1], xytext=(7, 0), textcoords="offset points", fontsize=8, va="center")
+    final = 1e3 * backbone(rest["bend_angle"][-1], rest["length"][-1])
+    axes.plot(*final.T, color="C3", lw=2.0, ls="--", label="static equilibrium")
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", title="Shapes up to the first peak (y stretched)")
+    axes.margins(x=0.08)
+    axes.legend(loc="upper left")
+
+
+def _on_the_way_up(tip_y: np.ndarray) -> list[int]:
+    """Samples at which the tip has done 0, 1, ... 4 quarters of its way to the first peak."""
+    way = np.abs(tip_y - tip_y[0])
+    peak = int(np.argmax(way))
+    return [int(np.argmax(way[: peak + 1] >= part * way[peak])) for part in np.linspace(0.0, 1.0, 5)]
+
+
+def _draw_tip(axes: Any, log: Log) -> None:
+    motion = log.trajectory
+    axes.plot(motion["time"], 1e3 * motion["disk_y"][:, -1], color="k", lw=1.2, label="motion")
+    axes.axhline(1e3 * log.equilibria["disk_y"][-1, -1], color="C3", ls="--", label="static equilibrium")
+    axes.set(
+        xlabel=QUANTITIES["time"].label, ylabel="tip y (mm)", title=f"Tip: {log.outcome.replace('_', ' ')}"
+    )
+    axes.legend(loc="lower right")
+
+
+def _draw_energies(axes: Any, log: Log) -> None:
+    motion = log.trajectory
+    styles = {
+        "input_work": ("-", "k"),
+        "dissipated_energy": ("--", "C1"),
+        "elastic_energy": ("-.", "C0"),
+        "gravity_energy": ((0, (6, 1, 1, 1, 1, 1)), "C4"),
+        "kinetic_energy": (":", "C2"),
+    }
+    for name, (style, color) in styles.items():
+        change = motion[name] - motion[name][0]
+        axes.plot(motion["time"], 1e3 * change, ls=style, color=color, label=name.replace("_", " "))
+    axes.set(xlabel=QUANTITIES["time"].label, ylabel="since the start (mJ)", title="Where the work goes")
+    axes.margins(y=0.25)
+    axes.legend(loc="upper right", ncols=2, fontsize=8)

@@ -1,0 +1,63 @@
+"""Scenes that the tests share: each new structure costs seconds to compile, so there are few."""
+
+from pathlib import Path
+
+import pytest
+
+from continuum_dyn import Scenario, Trajectory, simulate
+from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
+from statics import (
+    RONE2012_HOLE_OFFSET,
+    Arm,
+    Bending,
+    Cable,
+    Cables,
+    DiskLoad,
+    DiskLoads,
+    Extension,
+    Gravity,
+    Scene,
+)
+
+SCENARIOS = Path(__file__).parents[1] / "scenarios"
+UPPER = Cable("upper", RONE2012_HOLE_OFFSET)
+MOTION = (Inertia(), RotaryInertia(), MaterialDamping(retardation_time=1.2e-3))
+
+
+def rone2012(*, disks: int = 4, stiffness: float = 1.0, gravity: tuple[float, float] = (0.0, -9.81)) -> Scene:
+    """The paper's arm and effects: same length and mass for any number of disks, E J as a factor."""
+    arm = Arm.preset(
+        "rone2012",
+        disks=disks,
+        disk_spacing=0.08 / disks,
+        disk_mass=7.782e-4 * 4 / disks,
+        youngs_modulus=2.10e11 * stiffness,
+        cables=(UPPER,),
+    )
+    return Scene(arm, (Bending(), Extension(), Gravity(gravity), Cables()))
+
+
+def weightless_core(
+    *, disks: int, force: tuple[float, float] = (0.0, 0.0), moment: float = 0.0, length: float = 1.0
+) -> Scene:
+    """A straight, inextensible cantilever with E J = 1 N m^2 under a dead force and a moment at its tip."""
+    arm = Arm(disks, length / disks, youngs_modulus=1.0, second_moment=1.0)
+    return Scene(arm, (Bending(), DiskLoads(loads=(DiskLoad(disks, force, moment),))))
+
+
+def moving(scene: Scene, damping: bool = True) -> Scene:
+    """The scene with inertia, and with the paper's arm's damping unless it is to go on for ever."""
+    return Scene(scene.arm, (*scene.effects, *(MOTION if damping else MOTION[:2])))
+
+
+def motion(scenario: Scenario) -> Trajectory:
+    """The trajectory of a scenario that moves."""
+    trajectory = simulate(scenario).trajectory
+    assert trajectory is not None
+    return trajectory
+
+
+@pytest.fixture(scope="session")
+def paper_arm() -> Scene:
+    """The arm of Table 1 with its four effects at rest."""
+    return rone2012()

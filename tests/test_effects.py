@@ -1,0 +1,132 @@
+"""Over the registry: every effect names what it is made of, and leaves no trace where it is left out."""
+
+import pytest
+from conftest import UPPER
+
+from continuum_dyn import motion_kernel
+from continuum_dyn.effects import EFFECTS, Inertia, MaterialDamping, RotaryInertia
+from continuum_dyn.virtual_power import derive_dynamics, partial_velocity
+from statics import (
+    Arm,
+    Bending,
+    Cables,
+    DiskLoad,
+    DiskLoads,
+    Extension,
+    Gravity,
+    InputError,
+    Scene,
+    statics_kernel,
+)
+from statics.effects import Effect
+from statics.quantities import QUANTITIES
+from statics.segment import DiskSymbols, SegmentSymbols
+from statics.virtual_work import collect, partial_displacement
+
+ARM = Arm.preset("rone2012", cables=(UPPER,))
+ONE_OF_EACH: tuple[Effect, ...] = (
+    Bending(),
+    Extension(),
+    Gravity(),
+    Cables(),
+    DiskLoads(loads=(DiskLoad(4, (0.1, -0.2), 0.3),)),
+    Inertia(),
+    RotaryInertia(),
+    MaterialDamping(1e-3),
+)
+TRACES = {
+    "bending": ("reference_curvature",),
+    "extension": ("elongation", "axial_stiffness"),
+    "gravity": ("gravity_x", "gravity_y"),
+    "cables": ("tension_1", "hole_offset_1", "cable_passes_1"),
+    "loads": ("load_force_x", "load_force_y", "load_moment"),
+    "inertia": ("disk_mass*far_acceleration", "disk_mass*far_velocity"),
+    "rotary_inertia": ("disk_inertia",),
+    "material_damping": ("retardation_time",),
+}
+"""Names that an effect, and nothing else, brings into a generated kernel."""
+
+
+def everything_but(name: str) -> Scene:
+    return Scene(ARM, (effect for effect in ONE_OF_EACH if effect.name != name))
+
+
+def test_one_of_each_is_every_registered_effect() -> None:
+    assert {effect.name for effect in ONE_OF_EACH} == set(EFFECTS) == set(TRACES)
+
+
+@pytest.mark.parametrize("effect", ONE_OF_EACH, ids=lambda effect: effect.name)
+def test_effect_names_its_quantities_and_its_source(effect: Effect) -> None:
+    assert effect.source
+    assert set(effect.quantities) <= set(QUANTITIES)
+    assert set(effect.columns(ARM)) == set(effect.quantities)
+    assert set(effect.coordinates) <= set(QUANTITIES)
+    assert type(effect).__doc__
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_effect_left_out_leaves_no_trace_in_the_generated_source(name: str) -> None:
+    source = motion_kernel.write(everything_but(name))
+    found = [trace for trace in TRACES[name] if trace in source]
+    assert not found
+
+
+def test_effects_that_are_there_leave_their_traces() -> None:
+    source = motion_kernel.write(Scene(ARM, ONE_OF_EACH))
+    missing = [trace for traces in TRACES.values() for trace in traces if trace not in source]
+    assert missing == ["disk_mass*far_velocity"]  # the kinetic energy is written with squares
+
+
+def test_statics_knows_nothing_of_motion() -> None:
+    source = statics_kernel.write(Scene(ARM, ONE_OF_EACH).at_rest)
+    assert not [word for word in ("_rate", "velocity", "far_acceleration", "disk_inertia") if word in source]
+
+
+@pytest.mark.parametrize("effect", ONE_OF_EACH, ids=lambda effect: effect.name)
+def test_partial_velocities_are_partial_displacements(effect: Effect) -> None:
+    """Kane 1985, sec. 2.14: for r(q), dr'/du_i = dr/dq_i, so at rest virtual power is virtual work."""
+    at = SegmentSymbols(("bend_angle", "elongation"), 1) if effect.place == "segment" else DiskSymbols()
+    for _, displacement in collect([effect], effect.place, at)[0][1]:
+        for i, coordinate in enumerate(at.coordinates):
+            moving = partial_velocity(displacement, at.coordinates, at.rates, i)
+            assert moving == partial_displacement(displacement, coordinate)
+
+
+@pytest.mark.parametrize("effect", ONE_OF_EACH, ids=lambda effect: effect.name)
+def test_only_effects_in_motion_depend_on_rates_or_accelerations(effect: Effect) -> None:
+    at = SegmentSymbols(("bend_angle", "elongation"), 1) if effect.place == "segment" else DiskSymbols()
+    changing = {str(s) for s in (*at.rates, *at.accelerations)}
+    pairs = collect([effect], effect.place, at)[0][1]
+    symbols = {str(s) for pair in pairs for s in _free_symbols(pair.load)}
+    assert bool(symbols & changing) == (not effect.acts_at_rest)
+
+
+def _free_symbols(load: object) -> set[object]:
+    parts = load if isinstance(load, tuple) else (load,)
+    return set().union(*(getattr(part, "free_symbols", set()) for part in parts))
+
+
+def test_dissipated_power_is_never_negative() -> None:
+    power = derive_dynamics(Scene(ARM, ONE_OF_EACH)).on_segment.powers["dissipated_power"]
+    at = SegmentSymbols(("bend_angle", "elongation"), 1)
+    quadratic = [power.coeff(rate, 2) for rate in at.rates]
+    assert all(factor.subs(dict.fromkeys(factor.free_symbols, 2)) > 0 for factor in quadratic)
+
+
+def test_effects_in_any_order_are_the_same_scene() -> None:
+    assert Scene(ARM, ONE_OF_EACH).effects == Scene(ARM, reversed(ONE_OF_EACH)).effects
+
+
+def test_effect_given_twice_is_refused() -> None:
+    with pytest.raises(InputError, match="'gravity' is given 2 times"):
+        Scene(ARM, (Gravity(), Gravity((0.0, 0.0))))
+
+
+def test_effect_without_the_number_that_it_needs_is_refused_by_name() -> None:
+    with pytest.raises(InputError, match="'gravity' needs the arm's disk_mass"):
+        Scene(Arm(4, 0.02), (Gravity(),))
+
+
+def test_load_beyond_the_arm_is_refused() -> None:
+    with pytest.raises(InputError, match="disk 5"):
+        Scene(ARM, (DiskLoads(loads=(DiskLoad(5),)),))

@@ -1,0 +1,133 @@
+"""Every run ends in a named outcome and keeps what it had."""
+
+import os
+import signal
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import moving, rone2012
+
+from continuum_dyn import Run, Scenario, simulate
+from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.integrators import METHODS, Budget
+from continuum_dyn.profiles import Constant, Profile, Span, Step
+from continuum_dyn.study import Method, MotionStudy, RampStudy, Solver, StepResponseStudy
+from statics import InputError, Outcome, Scene
+
+
+def step_to(tension: float, duration: float = 0.05, method: Method = "LSODA") -> Scenario:
+    study = StepResponseStudy(duration, samples=51)
+    return Scenario(moving(rone2012()), (Step(before=0.0, after=tension),), study, Solver(method))
+
+
+def assert_kept(run: Run, until: float) -> None:
+    """What was computed before the end is there, finite, and in order."""
+    assert run.trajectory is not None
+    time = run.trajectory.time
+    assert time[0] == 0.0
+    assert 0.0 <= time[-1] <= until
+    assert np.all(np.diff(time) > 0)
+    assert np.isfinite(run.trajectory.disk_y).all()
+    assert np.isfinite(np.array(list(run.trajectory.ledger.values()))).all()
+    assert run.message
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_step_into_the_hole_limit_says_when_and_where(method: Method) -> None:
+    scenario = step_to(50.0, method=method)
+    if method in ("RK23", "RK45", "DOP853"):  # with extension explicit methods crawl: 6e6 1/s
+        scenario = replace(scenario, scene=without_extension())
+    run = simulate(scenario)
+    assert run.outcome is Outcome.GEOMETRY_LIMIT
+    assert "segment" in run.message
+    assert "t = 0.0" in run.message
+    assert_kept(run, 0.05)
+
+
+def without_extension() -> Scene:
+    plain = rone2012()
+    return moving(Scene(plain.arm, (effect for effect in plain.effects if effect.name != "extension")))
+
+
+def test_static_tension_beyond_the_limit_leaves_nothing_to_move_from() -> None:
+    run = simulate(Scenario(moving(rone2012()), (Constant(100.0),), MotionStudy(0.1)))
+    assert run.outcome is Outcome.GEOMETRY_LIMIT
+    assert run.trajectory is None
+    assert run.tip is None
+
+
+def test_ramp_that_leaves_the_equilibria_says_at_which_tension() -> None:
+    run = simulate(Scenario(rone2012(), ((10.0, 80.0, 95.0),), RampStudy()))
+    assert run.outcome is Outcome.GEOMETRY_LIMIT
+    assert "95 N" in run.message
+    assert [point.found for point in run.equilibria] == [True, True, False]
+
+
+def test_budget_of_steps_ends_the_run() -> None:
+    run = simulate(step_to(1.0), budget=Budget(steps=20))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "20 steps" in run.message
+    assert_kept(run, 0.05)
+
+
+def test_budget_of_seconds_ends_the_run() -> None:
+    run = simulate(step_to(1.0), budget=Budget(seconds=0.0))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert_kept(run, 0.05)
+
+
+@pytest.mark.parametrize("method", ["LSODA", "Radau", "BDF"])
+def test_forces_that_are_not_numbers_end_as_diverged(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
+    plain_rate = Dynamics.rate
+
+    def broken(self: Dynamics, t: float, y: np.ndarray, span: Span) -> np.ndarray:
+        return plain_rate(self, t, y, span) * (np.nan if t > 0.01 else 1.0)
+
+    monkeypatch.setattr(Dynamics, "rate", broken)
+    run = simulate(step_to(1.0, method=method), budget=Budget(seconds=20.0))
+    assert run.outcome is Outcome.DIVERGED
+    assert_kept(run, 0.02)
+
+
+def test_interrupt_ends_the_run_and_keeps_it() -> None:
+    pressed = []
+
+    def press_at(fraction: float) -> None:
+        if fraction > 0.5 and not pressed:
+            pressed.append(fraction)
+            os.kill(os.getpid(), signal.SIGINT)
+
+    before = signal.getsignal(signal.SIGINT)
+    run = simulate(step_to(1.0), press_at)
+    assert run.outcome is Outcome.INTERRUPTED
+    assert run.trajectory is not None
+    assert run.trajectory.time[-1] > 0.025
+    assert_kept(run, 0.05)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.parametrize(
+    ("outcome", "status"),
+    [
+        ("completed", 0),
+        ("settled", 0),
+        ("not_settled", 0),
+        ("geometry_limit", 1),
+        ("diverged", 1),
+        ("interrupted", 130),
+    ],
+)
+def test_exit_status_follows_the_outcome(outcome: str, status: int) -> None:
+    assert Outcome(outcome).exit_status == status
+
+
+@pytest.mark.parametrize("tension", [(), (Constant(1.0), Constant(1.0))])
+def test_scenario_needs_a_tension_for_each_cable(tension: tuple[Profile, ...]) -> None:
+    with pytest.raises(InputError, match="tensions given for 1 cable"):
+        Scenario(rone2012(), tension, MotionStudy(1.0))
+
+
+def test_motion_without_inertia_is_refused_by_name() -> None:
+    with pytest.raises(InputError, match="inertia"):
+        Scenario(rone2012(), (Constant(1.0),), MotionStudy(1.0))

@@ -1,0 +1,109 @@
+"""Tension profiles: values, corners, and no step across a corner."""
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from conftest import moving, rone2012
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from continuum_dyn import Scenario, simulate
+from continuum_dyn.integrators import METHODS
+from continuum_dyn.profiles import TIME_RESOLUTION, Constant, Profile, Ramp, Sine, Step, Table, spans
+from continuum_dyn.study import MotionStudy
+from statics import InputError
+
+
+def sampled(profile: Profile, times: np.ndarray, duration: float) -> np.ndarray:
+    stretches = spans((profile,), duration)
+    values = np.empty(times.size)
+    for span in stretches:
+        inside = (times >= span.start) & (times <= span.end)
+        values[inside] = span.tension(times[inside])[:, 0]
+    return values
+
+
+TIMES = np.linspace(0.0, 2.0, 401)
+
+
+@pytest.mark.parametrize(
+    ("profile", "expected"),
+    [
+        (Constant(1.5), lambda t: np.full_like(t, 1.5)),
+        (Step(before=1.0, after=3.0, at=0.7), lambda t: np.where(t < 0.7, 1.0, 3.0)),
+        (Step(before=1.0, after=3.0), lambda t: np.full_like(t, 3.0)),
+        (Ramp(1.0, 2.0, 0.5, 1.5), lambda t: np.interp(t, [0.5, 1.5], [1.0, 2.0])),
+        (Ramp(1.0, 2.0, 0.0, 1.5), lambda t: np.interp(t, [0.0, 1.5], [1.0, 2.0])),
+        (Sine(1.0, 0.5, 2.0), lambda t: 1.0 + 0.5 * np.sin(4 * np.pi * t)),
+        (Table((0.3, 0.9, 1.2), (1.0, 2.0, 0.0)), lambda t: np.interp(t, [0.3, 0.9, 1.2], [1.0, 2.0, 0.0])),
+        (Table((-1.0, 1.0), (1.0, 2.0)), lambda t: np.interp(t, [-1.0, 1.0], [1.0, 2.0])),
+        (Table((5.0,), (1.0,)), lambda t: np.full_like(t, 1.0)),
+    ],
+)
+def test_profile_has_the_values_that_its_name_says(
+    profile: Profile, expected: Callable[[np.ndarray], np.ndarray]
+) -> None:
+    np.testing.assert_allclose(sampled(profile, TIMES, 2.0), expected(TIMES), atol=1e-14)
+
+
+@given(rows=st.dictionaries(st.floats(-3.0, 3.0).map(lambda t: t + 0.0), st.floats(0.0, 10.0), min_size=1))
+@example(rows={0.0: 0.0, float(np.nextafter(0.3, 1.0)): 1.0, 0.3: 2.0})
+def test_table_is_linear_between_its_rows(rows: dict[float, float]) -> None:
+    times = tuple(sorted(rows))
+    assume(min(np.diff(times), default=1.0) > TIME_RESOLUTION)
+    values = tuple(rows[t] for t in times)
+    found = sampled(Table(times, values), TIMES, 2.0)
+    np.testing.assert_allclose(found, np.interp(TIMES, times, values), rtol=1e-9, atol=1e-9)
+
+
+def test_every_corner_of_every_profile_ends_a_span() -> None:
+    profiles = (Step(0.0, 1.0, at=0.3), Ramp(0.0, 1.0, 0.3, 0.8), Table((0.5, 0.6), (0.0, 1.0)))
+    stretches = spans(profiles, 1.0)
+    assert [span.start for span in stretches] == [0.0, 0.3, 0.5, 0.6, 0.8]
+    assert all(earlier.end == later.start for earlier, later in pairwise(stretches))
+
+
+def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[tuple[float, float]] = []
+    plain_step = METHODS["LSODA"].step
+
+    def noted(solver: object) -> object:
+        message = plain_step(solver)  # pyright: ignore[reportArgumentType]
+        taken.append((solver.t_old, solver.t))  # pyright: ignore[reportAttributeAccessIssue]
+        return message
+
+    monkeypatch.setattr(METHODS["LSODA"], "step", noted)
+    corners = (0.0123, 0.0301, 0.0456)
+    profile = Table((0.0, *corners), (0.0, 1.0, 0.2, 0.9))
+    run = simulate(Scenario(moving(rone2012()), (profile,), MotionStudy(0.08, samples=9)))
+    assert run.trajectory is not None
+    assert not [(a, b, c) for a, b in taken for c in corners if a < c < b]
+    assert set(corners) <= {end for _, end in taken}
+
+
+def test_motion_starts_from_the_equilibrium_before_a_step_at_zero() -> None:
+    run = simulate(Scenario(moving(rone2012()), (Step(before=0.4, after=1.0),), MotionStudy(0.01, samples=3)))
+    assert run.trajectory is not None
+    assert run.equilibria[0].tension == [0.4]
+    np.testing.assert_array_equal(run.trajectory.disk_y[0], run.equilibria[0].disk_y)
+    np.testing.assert_array_equal(run.trajectory.tension[:, 0], 1.0)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda: Ramp(0.0, 1.0, 1.0, 1.0),
+        lambda: Sine(1.0, 1.5, 2.0),
+        lambda: Table((0.0, 1.0, 0.5), (0.0, 1.0, 2.0)),
+        lambda: Table((0.0, 1.0), (0.0,)),
+        lambda: Table((0.0, 5e-324), (0.0, 1.0)),
+        lambda: Step(-1.0, 1.0),
+        lambda: Constant(float("nan")),
+    ],
+)
+def test_profiles_that_cannot_be_are_refused(wrong: Callable[[], Profile]) -> None:
+    with pytest.raises((InputError, ValidationError)):
+        wrong()
