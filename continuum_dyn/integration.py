@@ -74,7 +74,11 @@ def integrate(
                 parts.append(_last_reached(parts, span, monitor.reached))
                 break
     times, states, tension = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return trajectory_of(dynamics, times, states, tension, {"steps": monitor.steps, **counters})
+    whole = trajectory_of(dynamics, times, states, tension, {"steps": monitor.steps, **counters})
+    finite = whole.finite()
+    if finite.time.size < whole.time.size:
+        monitor.stop(Outcome.DIVERGED, f"energies overflow at t = {times[finite.time.size]:.6g} s")
+    return finite
 
 
 def _last_reached(parts: list[_Samples], span: Span, reached: tuple[float, np.ndarray]) -> _Samples:

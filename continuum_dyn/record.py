@@ -75,8 +75,9 @@ def write_log(run: Run, path: Path) -> None:
             _write(file, run)
         part.replace(path)
     except OSError as error:
-        part.unlink(missing_ok=True)
         raise LogError(f"cannot write the log {path}: {error.strerror or error}.") from error
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def read_log(path: Path) -> Log:

@@ -1,6 +1,6 @@
 """A motion at its samples."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,6 +37,16 @@ class Trajectory:
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk at the last sample."""
         return float(self.disk_x[-1, -1]), float(self.disk_y[-1, -1]), float(self.disk_theta[-1, -1])
+
+    def finite(self) -> "Trajectory":
+        """The samples before the first one that has a number which is not finite."""
+        columns = [
+            value for value in (*vars(self).values(), *self.ledger.values()) if isinstance(value, np.ndarray)
+        ]
+        good = np.all([np.isfinite(c).all(axis=tuple(range(1, c.ndim))) for c in columns], axis=0)
+        count = good.size if good.all() else int(np.argmin(good))
+        cut = {name: value[:count] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        return replace(self, **cut, ledger={name: value[:count] for name, value in self.ledger.items()})
 
     @property
     def ledger_gap(self) -> np.ndarray:

@@ -9,7 +9,7 @@ import pytest
 from conftest import moving, rone2012
 
 from continuum_dyn import Run, Scenario, simulate
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.dynamics import Dynamics, Observation
 from continuum_dyn.integrators import METHODS, Budget
 from continuum_dyn.profiles import Constant, Profile, Span, Step
 from continuum_dyn.study import Method, MotionStudy, RampStudy, Solver, StepResponseStudy
@@ -88,6 +88,21 @@ def test_forces_that_are_not_numbers_end_as_diverged(monkeypatch: pytest.MonkeyP
     run = simulate(step_to(1.0, method=method), budget=Budget(seconds=20.0))
     assert run.outcome is Outcome.DIVERGED
     assert_kept(run, 0.02)
+
+
+def test_energies_beyond_floating_point_end_as_diverged(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain_observe = Dynamics.observe
+
+    def overflowing(self: Dynamics, states: np.ndarray, tension: np.ndarray) -> Observation:
+        seen = plain_observe(self, states, tension)
+        if len(states) > 10:
+            seen.ledger["kinetic_energy"][10] = np.inf
+        return seen
+
+    monkeypatch.setattr(Dynamics, "observe", overflowing)
+    run = simulate(step_to(1.0))
+    assert run.outcome is Outcome.DIVERGED
+    assert_kept(run, 0.0091)
 
 
 def test_interrupt_ends_the_run_and_keeps_it() -> None:

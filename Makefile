@@ -1,0 +1,62 @@
+# The memory of how things are done here. Each target sets up what it needs.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
+
+.PHONY: help run test test-all check lint format types contracts benchmark pictures constraints clean
+
+help: ## List the targets.
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  \1\t/' | expand -t 16
+
+run: $(VENV)/run ## Simulate the step response and say where its log is.
+	$(BIN)/continuum-dyn run scenarios/step_response.toml
+
+test: $(VENV)/dev ## The default part of the tests.
+	$(BIN)/python -m pytest
+
+test-all: $(VENV)/dev ## All tests, the slow ones included.
+	$(BIN)/python -m pytest -m "slow or not slow"
+
+check: lint types contracts ## Lint, types and import contracts.
+
+lint: $(VENV)/dev
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+format: $(VENV)/dev ## Put the code into its house style.
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+types: $(VENV)/dev
+	$(BIN)/pyright
+
+contracts: $(VENV)/dev
+	$(BIN)/lint-imports
+
+benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
+	$(BIN)/python benchmarks/equilibria.py
+	$(BIN)/python benchmarks/warm_run.py
+
+pictures: $(VENV)/dev ## Make the pictures of the README again.
+	$(BIN)/python docs/pictures.py
+
+constraints: $(VENV)/dev ## Note the versions installed now.
+	(head -n 1 constraints.txt; $(BIN)/python -m pip freeze --exclude-editable) > constraints.new
+	mv constraints.new constraints.txt
+
+clean: ## Remove what was installed and generated here.
+	rm -rf $(VENV) .pytest_cache .ruff_cache .hypothesis .import_linter_cache build dist
+
+$(VENV)/made:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or later is needed; try: make PYTHON=python3.11 ...")'
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(VENV)/run: $(VENV)/made pyproject.toml constraints.txt
+	$(INSTALL) .
+	@touch $@
+
+$(VENV)/dev: $(VENV)/made pyproject.toml constraints.txt
+	$(INSTALL) ".[dev]"
+	@touch $@ $(VENV)/run

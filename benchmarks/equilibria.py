@@ -1,0 +1,104 @@
+"""What an equilibrium costs: from a straight arm to 2 N, in compiled code, over the number of segments.
+
+Absolute figures are reported; asserted are ratios within the run: the time grows linearly with the number
+of segments, and one Newton iteration stays below a multiple of a loop of as many multiply-adds.
+"""
+
+import statistics
+import time
+
+import numpy as np
+from numba import njit
+
+from statics import (
+    RONE2012_HOLE_OFFSET,
+    Arm,
+    Bending,
+    Cable,
+    Cables,
+    Extension,
+    Gravity,
+    Scene,
+    StaticSolver,
+)
+
+DISKS = (4, 16, 64, 256, 1024)
+REPEATS = 9
+WORK = 200_000
+"""Segments times solutions in one repeat."""
+LINEAR_WITHIN = 1.5
+"""Largest allowed ratio of the time per segment and iteration at 1024 segments to that at 64."""
+MULTIPLY_ADDS = 100
+"""Multiply-adds per segment and iteration that one iteration is held against."""
+ITERATION_WITHIN = 1.0
+"""Largest allowed ratio of one iteration to so many multiply-adds, each waiting for the one before."""
+
+
+def scene(disks: int) -> Scene:
+    """The paper's arm, its length and mass cut into that many segments."""
+    arm = Arm.preset(
+        "rone2012",
+        disks=disks,
+        disk_spacing=0.08 / disks,
+        disk_mass=4 * 7.782e-4 / disks,
+        cables=(Cable("upper", RONE2012_HOLE_OFFSET),),
+    )
+    return Scene(arm, (Bending(), Extension(), Gravity(), Cables()))
+
+
+@njit
+def chained_multiply_adds(count: int, factor: float) -> float:
+    """A fixed amount of arithmetic, to measure the machine by."""
+    total = 1.0
+    for _ in range(count):
+        total = total * factor + 1.0
+    return total
+
+
+def seconds_per_solution(disks: int) -> tuple[float, int]:
+    """Median time of a solution from straight at 2 N, and its Newton iterations."""
+    solver = StaticSolver(scene(disks))
+    find, segments, loads = solver.kernel.find_equilibrium, solver.segments, solver.disks
+    q, tension, unit = np.zeros((disks, 2)), np.array([2.0]), solver.scene.arm.rest_length
+
+    @njit
+    def many(q: np.ndarray, count: int) -> int:
+        iterations = 0
+        for _ in range(count):
+            q[:] = 0.0
+            iterations = find(q, tension, segments, loads, unit, 200)[1]
+        return iterations
+
+    count = max(1, WORK // disks)
+    iterations = many(q, 1)
+    times = []
+    for _ in range(REPEATS):
+        started = time.perf_counter()
+        many(q, count)
+        times.append((time.perf_counter() - started) / count)
+    return statistics.median(times), iterations
+
+
+def main() -> None:
+    """Print the table and check the ratios."""
+    chained_multiply_adds(1, 0.5)
+    started = time.perf_counter()
+    chained_multiply_adds(50_000_000, 0.5)
+    per_multiply_add = (time.perf_counter() - started) / 50_000_000
+    print(f"one chained multiply-add: {per_multiply_add * 1e9:.2f} ns")
+    print("segments  iterations  time per solution  per segment and iteration")
+    per_segment = {}
+    for disks in DISKS:
+        seconds, iterations = seconds_per_solution(disks)
+        per_segment[disks] = seconds / disks / iterations
+        print(f"{disks:8d}  {iterations:10d}  {seconds * 1e6:14.2f} us  {per_segment[disks] * 1e9:22.1f} ns")
+    growth = per_segment[1024] / per_segment[64]
+    against = per_segment[64] / (MULTIPLY_ADDS * per_multiply_add)
+    print(f"1024 against 64 segments, per segment: {growth:.2f} (allowed: {LINEAR_WITHIN})")
+    print(f"one iteration against {MULTIPLY_ADDS} multiply-adds: {against:.2f} (allowed: {ITERATION_WITHIN})")
+    assert growth < LINEAR_WITHIN
+    assert against < ITERATION_WITHIN
+
+
+if __name__ == "__main__":
+    main()
