@@ -65,19 +65,25 @@ class Dynamics:
         alone = [self.kernel.clearance_sweep(q[i], self.segments[i : i + 1]) for i in range(len(q))]
         return int(np.argmin(alone)) + 1
 
+    @property
+    def frequency(self) -> float:
+        """Scale of the arm's lowest frequency, sqrt((EJ / L) / (m n L^2)), rad/s; 1 without bending."""
+        arm = self.scene.arm
+        columns = arm.segment_columns() | arm.disk_columns()
+        stiffness = float(columns.get("bending_stiffness", 0.0)) / arm.total_length
+        inertia = float(columns["disk_mass"]) * arm.disks * arm.total_length**2
+        return float(np.sqrt(stiffness / inertia)) if stiffness else 1.0
+
     def scales(self) -> np.ndarray:
         """What one rad of bending compares with in each entry of the state, for absolute tolerances.
 
-        Elongations: the rest length; rates: the same times the arm's natural frequency; energies: the
-        bending stiffness over the rest length. Shape of the state.
+        Elongations: the rest length; rates: the same times the arm's frequency; energies: the bending
+        stiffness over the rest length. Shape of the state.
         """
         arm = self.scene.arm
-        columns = arm.segment_columns() | arm.disk_columns()
-        spring = float(columns.get("bending_stiffness", 0.0)) / arm.rest_length
-        inertia = float(columns["disk_mass"]) * arm.disks * arm.total_length**2
-        frequency = np.sqrt(spring / arm.disks / inertia) if spring else 1.0
+        energy = float(arm.segment_columns().get("bending_stiffness", arm.rest_length)) / arm.rest_length
         q = np.tile([1.0, arm.rest_length][: self.dofs], arm.disks)
-        return np.concatenate([q, frequency * q, np.full(2, spring or 1.0)])
+        return np.concatenate([q, self.frequency * q, np.full(2, energy)])
 
     def warm_up(self, span: Span) -> None:
         """Compile the kernel, or load it compiled, so that what follows is solving alone."""

@@ -20,6 +20,9 @@ from statics.outcome import Outcome
 COUNTERS = {"nfev": "evaluations", "njev": "jacobians", "nlu": "decompositions"}
 """What SciPy's solvers count, and what we call it."""
 
+FIRST_STEP = 1e-3
+"""First step of each span, in radians of the arm's lowest frequency or of the drive's, if that is higher."""
+
 
 class _Samples(NamedTuple):
     time: np.ndarray
@@ -89,6 +92,12 @@ def _last_reached(parts: list[_Samples], span: Span, reached: tuple[float, np.nd
     return _Samples(time, np.tile(y, (time.size, 1)), span.tension(time))
 
 
+def _first_step(dynamics: Dynamics, span: Span) -> float:
+    """A step that resolves the arm and its drive: at rest, solvers left alone try the whole span."""
+    fastest = max(dynamics.frequency, float(np.max(span.pieces[:, 4], initial=0.0)))
+    return min(FIRST_STEP / fastest, span.end - span.start)
+
+
 def _solve_span(dynamics: Dynamics, solver: Solver, span: Span, at: np.ndarray, monitor: Monitor) -> Any:
     """``solve_ivp`` over one span, from where the monitor has seen the last acceptable state."""
     return solve_ivp(
@@ -99,6 +108,7 @@ def _solve_span(dynamics: Dynamics, solver: Solver, span: Span, at: np.ndarray, 
         t_eval=np.unique(at),
         rtol=solver.rtol,
         atol=solver.atol * dynamics.scales(),
+        first_step=_first_step(dynamics, span),
         monitor=monitor,
         **({"jac": lambda t, y: dynamics.jacobian(t, y, span)} if solver.method in IMPLICIT else {}),
     )

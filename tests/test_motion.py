@@ -7,6 +7,7 @@ import pytest
 from conftest import SCENARIOS, motion, moving, rone2012
 
 from continuum_dyn import Scenario, load_scenario, simulate
+from continuum_dyn.integrators import Budget
 from continuum_dyn.profiles import Constant, Ramp, Sine, Step
 from continuum_dyn.study import Method, MotionStudy, Solver, StepResponseStudy
 from statics import Bending, Cables, Gravity, Outcome, Scene, equilibrium
@@ -135,3 +136,14 @@ def test_gravity_alone_swings_a_hanging_arm_about_rest() -> None:
     scene = moving(Scene(plain.arm, (Bending(), Gravity((0.0, -9.81)), Cables())))
     run = simulate(Scenario(scene, (Step(before=0.2, after=0.0),), StepResponseStudy(1.0), Solver("Radau")))
     assert run.outcome is Outcome.SETTLED
+
+
+@pytest.mark.parametrize("method", ["LSODA", "Radau", "BDF"])
+def test_drive_that_starts_gently_from_rest_is_not_stepped_over(method: Method) -> None:
+    study = MotionStudy(100.0, samples=2)
+    asked = Scenario(moving(rone2012()), (Sine(1.0, 0.9, 20.0),), study, Solver(method))
+    run = simulate(asked, budget=Budget(steps=3000))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert run.trajectory is not None
+    assert 0.05 < run.trajectory.time[-1] < 20.0
+    assert run.trajectory.tip_speed[-1] > 1e-3

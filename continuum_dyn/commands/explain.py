@@ -35,7 +35,8 @@ def explain(
     )
     typer.echo("Effects in play")
     for effect in scene.effects:
-        typer.echo(f"  {effect.name:<17} on each {effect.place:<8} {effect.source}")
+        line = f"  {effect.name:<17} on each {effect.place:<8} {effect.source}"
+        typer.echo(fill(line, 79, subsequent_indent=" " * 36))
     _print_equations(scene, latex)
 
 
@@ -61,8 +62,9 @@ def _print_equations(scene: Any, latex: bool) -> None:
     for coordinate, value in zip(forces.segment.coordinates, forces.on_segment.force, strict=True):
         typer.echo(write(f"Q_{_letter(coordinate.name)}", value, used))
     typer.echo(
-        "\nMotion: the sum of P . dr'/du over all segments and disks is zero for each rate u;"
-        "\nthe disks' loads reach a segment through the chain. At rest: the same with dr/dq."
+        "\nMotion: the sum of P . dr'/du over all segments and disks is zero for each"
+        "\nrate u; the disks' loads reach a segment through the chain. At rest: the same"
+        "\nwith dr/dq."
     )
     _print_letters(used)
 
