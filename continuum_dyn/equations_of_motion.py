@@ -12,6 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from continuum_dyn.generated import (
         CHAIN_COLUMNS,
+        ELIMINATE_START,
         MOTION_START,
         MOTION_TANGENT_START,
         OBSERVE_START,
@@ -53,7 +54,7 @@ def solve_mass(
 ) -> None:
     """W = -M^-1 residual, in one inward and one outward sweep."""
     descent = np.empty_like(residual)
-    eliminate_sweep(segments, disks, chain, residual, descent, descent)
+    eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, descent)
     substitute_sweep(chain, descent, w)
 
 

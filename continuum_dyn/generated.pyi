@@ -5,6 +5,7 @@ import numpy as np
 Carried = tuple[float, ...]
 
 CHAIN_COLUMNS: int
+ELIMINATE_START: Carried
 MOTION_START: Carried
 MOTION_TANGENT_START: Carried
 OBSERVE_START: Carried

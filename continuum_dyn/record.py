@@ -7,6 +7,7 @@ as it is. A log is complete or not there: it is written beside its place and the
 
 import platform
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -77,7 +78,8 @@ def write_log(run: Run, path: Path) -> None:
     except OSError as error:
         raise LogError(f"cannot write the log {path}: {error.strerror or error}.") from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):
+            part.unlink()
 
 
 def read_log(path: Path) -> Log:
@@ -94,14 +96,12 @@ def read_log(path: Path) -> Log:
 def _write(file: h5py.File, run: Run) -> None:
     file.attrs.update(_root_attributes(run))
     _write_arm(file.create_group("arm"), run.scenario)
-    points, times = _points(run)
+    numbers, points, times = _points(run)
     if points:
         group = file.create_group("equilibria")
-        columns = {name: _stacked(points, name) for name in _PER_POINT}
-        if times is not None:
-            columns["time"] = times
+        columns = {name: _stacked(points, name) for name in _PER_POINT} | {"time": times}
         known = {name: values for name, values in columns.items() if values is not None}
-        _write_group(group, "point", np.arange(1, len(points) + 1), known, run.scenario)
+        _write_group(group, "point", numbers, known, run.scenario)
     if run.trajectory is not None:
         group = file.create_group("trajectory")
         group.attrs.update(run.trajectory.counters)
@@ -144,17 +144,16 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
         _write_dataset(group, name, np.array(values), ["cable"])
 
 
-def _points(run: Run) -> tuple[list[Equilibrium], np.ndarray | None]:
-    """The equilibria to keep, and the times that they belong to in a motion."""
-    if run.trajectory is None:
-        return [point for point in run.equilibria if point.found], None
-    assert isinstance(run.scenario.study, MotionStudy)
-    if run.static_path:
-        timed = list(zip(run.static_path, run.trajectory.time, strict=True))
-    else:
-        timed = list(zip(run.equilibria, (0.0, run.scenario.study.duration), strict=True))
-    found = [(point, t) for point, t in timed if point.found]
-    return [point for point, _ in found], np.array([t for _, t in found])
+def _points(run: Run) -> tuple[np.ndarray, list[Equilibrium], np.ndarray | None]:
+    """The equilibria that were found, their numbers in the study, and in a motion their times."""
+    asked = run.static_path or run.equilibria
+    found = [number for number, point in enumerate(asked) if point.found]
+    times = None
+    if run.trajectory is not None:
+        assert isinstance(run.scenario.study, MotionStudy)
+        ends = np.array([0.0, run.scenario.study.duration])
+        times = (run.trajectory.time if run.static_path else ends)[found]
+    return np.array(found) + 1, [asked[number] for number in found], times
 
 
 def _stacked(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:

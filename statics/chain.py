@@ -11,9 +11,9 @@ import numpy as np
 if TYPE_CHECKING:
     from statics.generated import (
         CLEARANCE_START,
-        ELIMINATE_START,
         RESIDUAL_START,
         SUBSTITUTE_START,
+        Carried,
         clearance_step,
         eliminate_step,
         residual_step,
@@ -37,18 +37,22 @@ def residual_sweep(disks: np.ndarray, chain: np.ndarray, residual: np.ndarray) -
 
 
 def eliminate_sweep(
+    start: "Carried",
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
     residual: np.ndarray,
     descent: np.ndarray,
     pivots: np.ndarray,
-) -> float:
-    """Inwards: eliminate every segment from H dq = -residual; returns the number of negative pivots."""
-    carried = ELIMINATE_START
+) -> "Carried":
+    """Inwards: eliminate every segment from H dq = -residual, from ``ELIMINATE_START``.
+
+    What comes back begins with the results of ``eliminate_step``.
+    """
+    carried = start
     for i in range(residual.shape[0] - 1, -1, -1):
         carried = eliminate_step(i, carried, segments, disks, chain, residual, descent, pivots)
-    return carried[0]
+    return carried
 
 
 def substitute_sweep(chain: np.ndarray, descent: np.ndarray, change: np.ndarray) -> None:

@@ -83,11 +83,13 @@ class StaticSolver:
         """The equilibrium that is reached from ``start``, shape (disks, dofs); from straight by default."""
         arm = self.scene.arm
         q = np.zeros((arm.disks, len(self.scene.coordinates))) if start is None else start.copy()
-        ended, iterations, unstable = self.kernel.find_equilibrium(
+        ended, iterations = self.kernel.find_equilibrium(
             q, tension, self.segments, self.disks, arm.rest_length, MAX_ITERATIONS
         )
         pose = np.empty((arm.disks, 3))
-        elastic, gravity, residual = self.kernel.examine(q, tension, self.segments, self.disks, pose)
+        elastic, gravity, residual, negative = self.kernel.examine(
+            q, tension, self.segments, self.disks, pose
+        )
         elongation = q[:, 1] if q.shape[1] == 2 else None
         return Equilibrium(
             outcome=_OUTCOMES[ended],
@@ -100,7 +102,7 @@ class StaticSolver:
             disk_theta=pose[:, 2],
             elastic_energy=elastic,
             gravity_energy=gravity,
-            unstable_directions=unstable,
+            unstable_directions=negative,
             iterations=iterations,
             residual=residual,
         )

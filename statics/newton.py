@@ -1,8 +1,8 @@
 """Newton's method on the chain that ends in a stable equilibrium: plain Python, composed into kernels.
 
-The potential energy must fall (Armijo); pivot blocks are made positive, so that every step descends;
-at a saddle the way out is the direction of negative curvature that the elimination knows. A trial
-beyond a geometric limit counts as infinitely high.
+The potential energy must fall (Armijo); pivot blocks are made positive as they come, so that every step
+descends; at a saddle the way out is the direction of negative curvature that the elimination knows. A
+trial beyond a geometric limit counts as infinitely high.
 """
 
 import math
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
     from statics.generated import (
         CHAIN_COLUMNS,
+        ELIMINATE_START,
         OBSERVE_START,
         PIVOT_COLUMNS,
         POSE_START,
@@ -29,6 +30,8 @@ AT_LIMIT = 1e-6
 """Clearance (over L0) at which an arm that still descends has reached its geometric limit."""
 LARGEST_TURN = 1.0
 """Most that one step may turn any disk, rad."""
+SINGULAR, TINY = 1e-9, 1e-30
+"""Pivots below this part of the torque scale, or below this at all, count as that large."""
 ROUNDING = 1e-11
 """A predicted fall of the potential below this part of its scale cannot be seen in it."""
 
@@ -43,37 +46,45 @@ def pose_sweep(
     return carried[0], carried[1], carried[2]
 
 
-def positive_inverse_1(a: float, size: float) -> tuple[float, float, float]:
-    """Inverse of a pivot's absolute value; the torque scale so far; 1 if the pivot was negative."""
+def pivot_inverse_1(a: float, size: float, keep_sign: float) -> tuple[float, float, float]:
+    """Inverse of a pivot's absolute value; the torque scale so far; 1 if the pivot is negative.
+
+    With ``keep_sign`` the inverse has the pivot's sign.
+    """
     size = max(size, abs(a))
-    return 1.0 / max(abs(a), 1e-9 * size, 1e-30), size, 1.0 if a < 0.0 else 0.0
+    inverse = 1.0 / max(abs(a), SINGULAR * size, TINY)
+    negative = 1.0 if a < 0.0 else 0.0
+    return inverse * (1.0 - 2.0 * negative * keep_sign), size, negative
 
 
-def positive_inverse_2(
-    a: float, b: float, c: float, unit: float, size: float
+def pivot_inverse_2(
+    a: float, b: float, c: float, unit: float, size: float, keep_sign: float
 ) -> tuple[float, float, float, float, float]:
     """Inverse of the pivot [[a, b], [b, c]] with its eigenvalues made positive.
 
     The second coordinate is measured in ``unit``, so that eigenvalues compare. Returns the three entries
-    of the inverse, the torque scale so far, and the number of negative eigenvalues.
+    of the inverse, the torque scale so far, and the number of negative eigenvalues, whose signs stay with
+    ``keep_sign``.
     """
     b, c = b * unit, c * unit * unit
     size = max(size, abs(a))
-    floor = 1e-9 * size + 1e-30
+    floor = SINGULAR * size + TINY
     determinant = a * c - b * b
     if a + c > 0.0 and determinant > floor * (a + c):
         return c / determinant, -b * unit / determinant, a * unit * unit / determinant, size, 0.0
     mean, radius = 0.5 * (a + c), math.hypot(0.5 * (a - c), b)
     low, high = mean - radius, mean + radius
+    low_is_negative, high_is_negative = 1.0 if low < 0.0 else 0.0, 1.0 if high < 0.0 else 0.0
+    of_low = (1.0 - 2.0 * low_is_negative * keep_sign) / max(abs(low), floor)
+    of_high = (1.0 - 2.0 * high_is_negative * keep_sign) / max(abs(high), floor)
     turn = 0.5 * math.atan2(2.0 * b, a - c)
     cosine, sine = math.cos(turn), math.sin(turn)
-    of_low, of_high = 1.0 / max(abs(low), floor), 1.0 / max(abs(high), floor)
     return (
         cosine * cosine * of_high + sine * sine * of_low,
         cosine * sine * (of_high - of_low) * unit,
         (sine * sine * of_high + cosine * cosine * of_low) * unit * unit,
         size,
-        (1.0 if low < 0.0 else 0.0) + (1.0 if high < 0.0 else 0.0),
+        low_is_negative + high_is_negative,
     )
 
 
@@ -187,27 +198,25 @@ def lengthen(
 
 def find_equilibrium(
     q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, unit: float, most: int
-) -> tuple[int, int, int]:
+) -> tuple[int, int]:
     """Move ``q``, shape (n, dofs), to an equilibrium; ``unit`` is the length elongations compare with.
 
-    Returns how it ended (STABLE, UNSTABLE, LIMIT, NOT_FOUND), the iterations (at most ``most``), and the
-    number of unstable directions.
+    Returns how it ended (STABLE, UNSTABLE, LIMIT, NOT_FOUND) and the iterations (at most ``most``).
     """
     chain = np.empty((q.shape[0], CHAIN_COLUMNS))
     residual, descent = np.empty_like(q), np.empty_like(q)
     change, trial = np.empty_like(q), np.empty_like(q)
     pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
     potential, scale, clearance = pose_sweep(q, tension, segments, disks, chain)
-    negative = 0
     for iteration in range(1, most + 1):
         residual_sweep(disks, chain, residual)
-        negative = int(eliminate_sweep(segments, disks, chain, residual, descent, pivots))
+        negative = int(eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, pivots)[0])
         substitute_sweep(chain, descent, change)
         single, turn = measure(change, unit)
         slope, curvature = inner(residual, change), 0.0
         if single < AT_REST and negative == 0:
             advance(q, 1.0, change, q)
-            return STABLE, iteration, 0
+            return STABLE, iteration
         if single < AT_REST:
             curvature = saddle_direction(unit, chain, pivots, descent, change)
             slope = inner(residual, change)
@@ -230,28 +239,32 @@ def find_equilibrium(
             trial,
         )
         if factor == 0.0:
-            return (UNSTABLE if curvature < 0.0 else NOT_FOUND), iteration, negative
+            return (UNSTABLE if curvature < 0.0 else NOT_FOUND), iteration
         if negative > 0:
             largest = max(LARGEST_TURN / max(turn, 1e-30), 1.0)
             seen = lengthen(q, change, factor, largest, seen, tension, segments, disks, chain, trial)
         q[:] = trial
         potential, scale, clearance = seen
         if clearance < AT_LIMIT:
-            return LIMIT, iteration, negative
-    return NOT_FOUND, most, negative
+            return LIMIT, iteration
+    return NOT_FOUND, most
 
 
 def examine(
     q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, pose: np.ndarray
-) -> tuple[float, float, float]:
+) -> tuple[float, float, float, int]:
     """Poses of the disks into ``pose``, shape (n, 3).
 
-    Returns elastic energy, gravity energy (J) and the largest residual (N or N m).
+    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and the number of negative
+    eigenvalues of the potential energy's Hessian: at an equilibrium, its unstable directions.
     """
-    chain, residual = np.empty((q.shape[0], CHAIN_COLUMNS)), np.empty_like(q)
+    chain, residual, descent = np.empty((q.shape[0], CHAIN_COLUMNS)), np.empty_like(q), np.empty_like(q)
+    pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
     pose_sweep(q, tension, segments, disks, chain)
     residual_sweep(disks, chain, residual)
+    keeping_signs = (0.0, 0.0, 1.0, *ELIMINATE_START[3:])
+    negative = eliminate_sweep(keeping_signs, segments, disks, chain, residual, descent, pivots)[0]
     carried = OBSERVE_START
     for i in range(q.shape[0]):
         carried = observe_step(i, carried, q, segments, disks, pose)
-    return carried[0], carried[1], np.abs(residual).max()
+    return carried[0], carried[1], np.abs(residual).max(), int(negative)

@@ -302,23 +302,27 @@ def _weighted(weights: Weights, forces: Any, place: str) -> sp.Matrix:
 
 
 def _pivot_inverse(trace: Trace, A: sp.Matrix, weights: Weights) -> tuple[sp.Matrix, dict[str, Any]]:
-    """The pivot's inverse: made positive where the matrix may be indefinite, plain where it is a mass."""
+    """The pivot's inverse and what the sweep counts.
+
+    A mass matrix is positive: nothing to count. Where the matrix may be indefinite the pivot is made
+    positive, unless the sweep is asked to keep its sign.
+    """
     dofs = A.shape[0]
     if weights.stiffness == 0:
         return _plain_inverse(trace, A), {}
-    entries = [A[r, c] for r in range(dofs) for c in range(r, dofs)]
-    names = [f"inverse_{r}{c}" for r in range(dofs) for c in range(r, dofs)]
+    entries = [(r, c) for r in range(dofs) for c in range(r, dofs)]
     units = [symbol("rest_length")] if dofs == 2 else []
-    *inverse, pivot_scale, negative = trace.call(
-        f"positive_inverse_{dofs}",
-        [*entries, *units, symbol("pivot_scale")],
-        [*names, "pivot_size", "negative"],
+    *inverse, size, negative = trace.call(
+        f"pivot_inverse_{dofs}",
+        [*(A[r, c] for r, c in entries), *units, symbol("pivot_scale"), symbol("keep_sign")],
+        [*(f"inverse_{r}{c}" for r, c in entries), "pivot_size", "negative"],
     )
-    by_name = dict(zip(names, inverse, strict=True))
-    matrix = sp.Matrix(dofs, dofs, lambda r, c: by_name[f"inverse_{min(r, c)}{max(r, c)}"])
+    by_place = dict(zip(entries, inverse, strict=True))
+    matrix = sp.Matrix(dofs, dofs, lambda r, c: by_place[min(r, c), max(r, c)])
     return matrix, {
         "negative_pivots": (0.0, symbol("negative_pivots") + negative),
-        "pivot_scale": (0.0, pivot_scale),
+        "pivot_scale": (0.0, size),
+        "keep_sign": (0.0, symbol("keep_sign")),
     }
 
 

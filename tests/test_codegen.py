@@ -105,6 +105,6 @@ def test_interpreted_kernel_needs_no_compiler(paper_arm: Scene) -> None:
     segments = paper_arm.table("segment", kernel.SEGMENT_COLUMNS)
     disks = paper_arm.table("disk", kernel.DISK_COLUMNS)
     q = np.zeros((4, 2))
-    ended, _, _ = kernel.find_equilibrium(q, np.array([1.0]), segments, disks, 0.02, 50)
+    ended, _ = kernel.find_equilibrium(q, np.array([1.0]), segments, disks, 0.02, 50)
     assert ended == 0
     np.testing.assert_allclose(q[:, 0], equilibrium(paper_arm, 1.0).bend_angle, rtol=1e-12)

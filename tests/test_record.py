@@ -13,7 +13,7 @@ from continuum_dyn import Run, Scenario, load_scenario, simulate
 from continuum_dyn.integrators import Budget
 from continuum_dyn.profiles import Step
 from continuum_dyn.record import FORMAT_VERSION, read_log, write_log
-from continuum_dyn.study import MotionStudy
+from continuum_dyn.study import MotionStudy, RampStudy
 from statics import Outcome, Scene
 from statics.errors import LogError
 from statics.quantities import QUANTITIES
@@ -106,6 +106,14 @@ def test_static_studies_have_equilibria_alone(tmp_path: Path, name: str) -> None
     assert found.equilibria["tension"].shape == (len(run.equilibria), len(run.scenario.scene.arm.cables))
 
 
+def test_point_that_was_not_found_leaves_its_number_free(tmp_path: Path) -> None:
+    run = simulate(Scenario(rone2012(), ((50.0, 90.0, 60.0),), RampStudy()))
+    write_log(run, tmp_path / "log.h5")
+    found = read_log(tmp_path / "log.h5").equilibria
+    np.testing.assert_array_equal(found["point"], [1, 3])
+    np.testing.assert_array_equal(found["tension"][:, 0], [50.0, 60.0])
+
+
 def test_run_that_stopped_early_is_on_disk(tmp_path: Path) -> None:
     scenario = load_scenario(SCENARIOS / "step_response.toml")
     run = simulate(scenario, budget=Budget(steps=50))
@@ -127,7 +135,10 @@ def test_numbers_that_are_not_finite_reach_no_log(run: Run, tmp_path: Path) -> N
 def test_nothing_is_left_where_a_log_cannot_be_written(run: Run, tmp_path: Path) -> None:
     with pytest.raises(LogError, match="cannot write"):
         write_log(run, tmp_path / "none" / "log.h5")
-    assert not list(tmp_path.iterdir())
+    (tmp_path / "file").touch()
+    with pytest.raises(LogError, match="cannot write"):
+        write_log(run, tmp_path / "file" / "log.h5")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
 @pytest.mark.parametrize("kind", ["missing", "text", "other", "version"])

@@ -6,24 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from continuum_dyn.record import Log
+from continuum_dyn.views.backbone import backbone
 from statics.quantities import QUANTITIES
 
-ARC_POINTS = 13
-
-
-def backbone(bend_angle: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Points along the core, base first, from shapes (disks,) in rad and m; shape (points, 2), m.
-
-    Each segment is a circular arc: a chord at half its angle (Rone 2012, Eq. 11).
-    """
-    along = np.linspace(0.0, 1.0, ARC_POINTS)[1:]
-    theta = np.concatenate([[0.0], np.cumsum(bend_angle)])[:-1]
-    half = 0.5 * bend_angle[:, None] * along
-    chord = length[:, None] * along * np.sinc(half / np.pi)
-    arcs = chord * np.exp(1j * (theta[:, None] + half))
-    starts = np.concatenate([[0.0], np.cumsum(arcs[:, -1])])[:-1]
-    points = np.concatenate([[0.0], (starts[:, None] + arcs).ravel()])
-    return np.column_stack([np.real(points), np.imag(points)])
+ARC_POINTS = 12
 
 
 def step_response(log: Log) -> Figure:
@@ -42,13 +28,13 @@ def step_response(log: Log) -> Figure:
 def _draw_shapes(axes: Any, log: Log) -> None:
     motion, rest = log.trajectory, log.equilibria
     for rank, sample in enumerate(shown := _on_the_way_up(motion["disk_y"][:, -1])):
-        points = 1e3 * backbone(motion["bend_angle"][sample], motion["length"][sample])
+        points = 1e3 * backbone(motion, np.array([sample]), ARC_POINTS)[0]
         grey = str(0.75 - 0.6 * rank / (len(shown) - 1))
         axes.plot(*points.T, color=grey, lw=1.6)
-        axes.plot(*points[:: ARC_POINTS - 1].T, "o", color=grey, ms=3.5)
+        axes.plot(*points[::ARC_POINTS].T, "o", color=grey, ms=3.5)
         label = f"{motion['time'][sample] * 1e3:.0f} ms"
         axes.annotate(label, points[-1], xytext=(7, 0), textcoords="offset points", fontsize=8, va="center")
-    final = 1e3 * backbone(rest["bend_angle"][-1], rest["length"][-1])
+    final = 1e3 * backbone(rest, np.array([-1]), ARC_POINTS)[0]
     axes.plot(*final.T, color="C3", lw=2.0, ls="--", label="static equilibrium")
     axes.set(xlabel="x (mm)", ylabel="y (mm)", title="Shapes up to the first peak (y stretched)")
     axes.margins(x=0.08)
