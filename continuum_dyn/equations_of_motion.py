@@ -52,7 +52,7 @@ def motion_sweep(
 def solve_mass(
     segments: np.ndarray, disks: np.ndarray, chain: np.ndarray, residual: np.ndarray, w: np.ndarray
 ) -> None:
-    """W = -M^-1 residual, in one inward and one outward sweep."""
+    """Set w to -M^-1 residual, in one inward and one outward sweep."""
     descent = np.empty_like(residual)
     eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, descent)
     substitute_sweep(chain, descent, w)

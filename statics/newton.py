@@ -110,7 +110,7 @@ def inner(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def advance(q: np.ndarray, factor: float, change: np.ndarray, trial: np.ndarray) -> None:
-    """Trial = q + factor * change."""
+    """Set trial to q + factor * change."""
     for i in range(q.shape[0]):
         for k in range(q.shape[1]):
             trial[i, k] = q[i, k] + factor * change[i, k]

@@ -51,18 +51,18 @@ class Reach:
 
     @property
     def partials(self) -> sp.Matrix:
-        """S, shape (3, dofs): the far disk's pose by the segment's coordinates."""
+        """The partials S, shape (3, dofs): the far disk's pose by the segment's coordinates."""
         return self.by_q.col_join(self.turn_by_q)
 
     @property
     def transition(self) -> sp.Matrix:
-        """X, shape (3, 3): the far disk's pose by the near disk's."""
+        """The transition X, shape (3, 3): the far disk's pose by the near disk's."""
         across = turned(self.whole)
         return sp.Matrix([[1, 0, across[0]], [0, 1, across[1]], [0, 0, 1]])
 
 
 def turned(vector: sp.Matrix) -> sp.Matrix:
-    """Z x vector, in the plane."""
+    """The product z x vector, in the plane."""
     return sp.Matrix([-vector[1], vector[0]])
 
 

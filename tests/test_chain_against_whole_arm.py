@@ -1,0 +1,202 @@
+"""The chain's equations of motion are those of the whole arm by sympy's KanesMethod."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import whole_arm
+from whole_arm import (
+    bare_scene,
+    difference_matrix,
+    directional,
+    full_scene,
+    random_state,
+    relative_error,
+    stiff_scene,
+)
+
+from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.motion_kernel import RECIPE as MOTION
+from continuum_dyn.profiles import Span
+from statics import codegen, equilibria
+from statics.arm import Cable
+from statics.equilibria import StaticSolver
+from statics.scene import Scene
+from statics.statics_kernel import RECIPE as STATICS
+
+SEEDS = range(10)
+TIME = 0.3
+ROUNDING = 2e-12
+"""Relative; 4e-13 is reached with extension, where axial forces of 1e5 N cancel, and 5e-14 without."""
+
+any_scene = pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, bare_scene])
+
+
+def pulling(scene: Scene) -> Span:
+    """Tensions that change with time, for as many cables as the scene has."""
+    pieces = np.array([[0.1, 1.3, 2.0, 0.4, 50.0], [0.0, 0.7, -1.0, 0.0, 0.0]])
+    return Span(0.1, 1.0, pieces[: scene.cables])
+
+
+def tension_at(scene: Scene) -> np.ndarray:
+    """Tensions of ``pulling`` at ``TIME``, written out."""
+    upper, lower = 1.3 + 2.0 * (TIME - 0.1) + 0.4 * np.sin(50.0 * TIME), 0.7 - 1.0 * TIME
+    return np.array([upper, lower])[: scene.cables]
+
+
+def chain_accelerations(scene: Scene, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    dynamics = Dynamics(scene)
+    rate = dynamics.rate(TIME, dynamics.state(q, u), pulling(scene))
+    return rate[dynamics.size : 2 * dynamics.size].reshape(q.shape)
+
+
+def kane_accelerations(scene: Scene, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    return whole_arm.accelerations(whole_arm.whole_arm(scene), q, u, tension_at(scene))
+
+
+# ---- accelerations ----
+
+
+@any_scene
+@pytest.mark.parametrize("disks", [1, 2, 3])
+def test_accelerations_equal_kanes_method_on_the_whole_arm(
+    scene_of: Callable[[int], Scene], disks: int
+) -> None:
+    scene = scene_of(disks)
+    for seed in SEEDS:
+        q, u = random_state(scene, seed)
+        assert relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u)) < ROUNDING
+
+
+@pytest.mark.slow
+def test_accelerations_equal_kanes_method_for_the_four_disks_of_table_1() -> None:
+    scene = full_scene(4)
+    q, u = random_state(scene, seed=1)
+    assert relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u)) < ROUNDING
+
+
+def test_accelerations_equal_kanes_method_for_segments_that_almost_close_to_circles() -> None:
+    """Half angles beyond 2, where the sigma functions change from their series to the recurrence."""
+    scene = full_scene(3, cables=(Cable("upper", 0.001), Cable("lower", -0.002, anchor=2)))
+    for seed in SEEDS:
+        q, u = random_state(scene, seed, bend=5.5)
+        assert relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u)) < ROUNDING
+
+
+@pytest.mark.parametrize("bends", [(0.0, 0.0), (0.0, 1.2), (-1e-9, 0.0), (1e-3, -1e-5)])
+def test_accelerations_equal_kanes_method_of_many_digits_through_straight(bends: tuple[float, float]) -> None:
+    scene = full_scene(2)
+    q, u = random_state(scene, seed=3)
+    q[:, 0] = bends
+    expected = whole_arm.precise_accelerations(whole_arm.whole_arm(scene), q, u, tension_at(scene))
+    assert relative_error(chain_accelerations(scene, q, u), expected) < ROUNDING
+
+
+@pytest.mark.parametrize(
+    "number", ["L0", "EJ", "EA", "k0", "m", "I_xx", "g", "relaxation", "r_h", "force", "moment"]
+)
+def test_kanes_method_tells_when_one_number_is_wrong_by_a_ten_thousandth(number: str) -> None:
+    scene = full_scene(2)
+    arm = whole_arm.whole_arm(scene)
+    wrong = replace(arm, **{number: 1.0001 * getattr(arm, number)})
+    q, u = random_state(scene, seed=4)
+    expected = whole_arm.accelerations(wrong, q, u, tension_at(scene))
+    assert relative_error(chain_accelerations(scene, q, u), expected) > 10 * ROUNDING
+
+
+# ---- the power ledger ----
+
+
+def test_powers_are_those_of_the_whole_arm() -> None:
+    """Power in: tension times shortening, dead loads times velocity; power out: Kelvin-Voigt."""
+    scene = full_scene(3)
+    arm, dynamics, (q, u) = whole_arm.whole_arm(scene), Dynamics(scene), random_state(scene, seed=5)
+    power_in, dissipated = dynamics.rate(TIME, dynamics.state(q, u), pulling(scene))[-2:]
+
+    def load_energy(q: np.ndarray) -> complex:
+        return whole_arm.cable_energy(arm, q, tension_at(scene)) + whole_arm.load_energy(arm, q)
+
+    viscosity = arm.relaxation / arm.L0 * np.array([arm.EJ, arm.EA])
+    assert power_in == pytest.approx(-directional(load_energy, q, u), rel=1e-12)
+    assert dissipated == pytest.approx(np.sum(viscosity * u**2), rel=1e-14)
+
+
+@any_scene
+def test_kinetic_energy_is_that_of_kanes_mass_matrix(scene_of: Callable[[int], Scene]) -> None:
+    scene = scene_of(3)
+    dynamics, (q, u) = Dynamics(scene), random_state(scene, seed=6)
+    seen = dynamics.observe(dynamics.state(q, u)[None, :], tension_at(scene)[None, :])
+    mass, _ = whole_arm.mass_and_forcing(whole_arm.whole_arm(scene), q, u, tension_at(scene))
+    expected = u.T.ravel() @ mass @ u.T.ravel() / 2
+    assert seen.ledger["kinetic_energy"][0] == pytest.approx(expected, rel=1e-13)
+
+
+# ---- the Jacobian ----
+
+
+def kinds_of(dynamics: Dynamics) -> np.ndarray:
+    """Kind of each entry of the state: bends, elongations, their rates, input work, dissipated energy."""
+    q = np.tile(np.arange(dynamics.dofs), dynamics.scene.arm.disks)
+    return np.concatenate([q, q + dynamics.dofs, [2 * dynamics.dofs, 2 * dynamics.dofs + 1]])
+
+
+def block_error(actual: np.ndarray, expected: np.ndarray, kinds: np.ndarray) -> float:
+    """Largest error in the derivatives of one kind by another, over their largest; zeros must be zero."""
+    worst = 0.0
+    for row in np.unique(kinds):
+        for column in np.unique(kinds):
+            block = np.ix_(kinds == row, kinds == column)
+            error, size = np.abs(actual[block] - expected[block]).max(), np.abs(expected[block]).max()
+            worst = max(worst, error / size if size > 0 else error)
+    return worst
+
+
+@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene])
+def test_exact_jacobian_equals_differences_of_the_rate(scene_of: Callable[[int], Scene]) -> None:
+    scene = scene_of(4)
+    dynamics = Dynamics(scene)
+    q, u = random_state(scene, seed=7)
+    y, span = dynamics.state(q, u), pulling(scene)
+    of_q, of_u = [0.01, 0.01 * scene.arm.disk_spacing], [1.0, 0.1]
+    steps = np.array([*of_q[: dynamics.dofs], *of_u[: dynamics.dofs], 1.0, 1.0])
+    expected = difference_matrix(lambda y: dynamics.rate(TIME, y, span), y, steps[kinds_of(dynamics)])
+    assert block_error(dynamics.jacobian(TIME, y, span), expected, kinds_of(dynamics)) < 1e-9
+
+
+# ---- compiled code, interpreted code, and the static kernel ----
+
+
+def test_compiled_motion_equals_interpreted_motion() -> None:
+    scene = full_scene(3)
+    dynamics, interpreted = Dynamics(scene), codegen.load_interpreted(scene, MOTION)
+    y = dynamics.state(*random_state(scene, seed=8))
+    arguments = (TIME, y, pulling(scene).pieces, dynamics.segments, dynamics.disks, dynamics.dofs)
+    np.testing.assert_allclose(dynamics.kernel.rate(*arguments), interpreted.rate(*arguments), rtol=1e-11)
+    jacobians = dynamics.kernel.rate_jacobian(*arguments), interpreted.rate_jacobian(*arguments)
+    assert block_error(*jacobians, kinds_of(dynamics)) < ROUNDING
+
+
+def test_compiled_equilibrium_equals_interpreted_equilibrium() -> None:
+    solver = StaticSolver(full_scene(4))
+    interpreted = codegen.load_interpreted(solver.scene, STATICS)
+    numbers = tension_at(solver.scene), solver.segments, solver.disks, 0.02, equilibria.MAX_ITERATIONS
+    compiled_q, interpreted_q = np.zeros((4, 2)), np.zeros((4, 2))
+    outcome = solver.kernel.find_equilibrium(compiled_q, *numbers)
+    assert outcome == interpreted.find_equilibrium(interpreted_q, *numbers)
+    assert relative_error(compiled_q, interpreted_q) < 1e-13
+
+
+@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene])
+def test_virtual_power_at_rest_equals_virtual_work(scene_of: Callable[[int], Scene]) -> None:
+    scene = scene_of(5)
+    motion, statics, tension = Dynamics(scene), StaticSolver(scene), tension_at(scene)
+    q, _ = random_state(scene, seed=9)
+    still, by_power, by_work = np.zeros_like(q), np.empty_like(q), np.empty_like(q)
+    chain = np.empty((len(q), motion.kernel.CHAIN_COLUMNS))
+    motion.kernel.motion_sweep(q, still, still, tension, motion.segments, motion.disks, chain)
+    motion.kernel.residual_sweep(motion.disks, chain, by_power)
+    chain = np.empty((len(q), statics.kernel.CHAIN_COLUMNS))
+    statics.kernel.pose_sweep(q, tension, statics.segments, statics.disks, chain)
+    statics.kernel.residual_sweep(statics.disks, chain, by_work)
+    assert relative_error(by_power, by_work) < 1e-14

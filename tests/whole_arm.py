@@ -1,0 +1,359 @@
+"""The whole arm, twice over, from the paper's formulas alone: an oracle for the program's chain.
+
+Equations of motion by sympy's KanesMethod, with cables as forces on the disks' holes; potential energy
+by numpy, in complex numbers. Nothing is taken from the program but the numbers of a scene. The paper's
+formulas divide by the curvature, so states must stay away from straight segments.
+
+Coordinates q and rates u have shape (n, 1) or (n, 2), one row for each segment: phi = k L, and e = L - L0.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import mpmath
+import numpy as np
+import sympy as sp
+from sympy.physics.mechanics import (
+    KanesMethod,
+    Point,
+    ReferenceFrame,
+    RigidBody,
+    dynamicsymbols,
+    inertia,
+)
+
+from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
+from statics.arm import Arm, Cable
+from statics.effects import Bending, Cables, DiskLoad, DiskLoads, Extension, Gravity
+from statics.scene import Scene
+
+# ---- the numbers of an arm ----
+
+
+@dataclass(frozen=True, eq=False)
+class WholeArm:
+    """An arm in the paper's letters, SI units; what a scene leaves out is zero here.
+
+    ``r_h`` and ``last`` (the anchor's disk) hold one number for each cable, ``force`` (n, 2) and ``moment``
+    (n,) the dead loads on the disks; ``relaxation`` is eta / E.
+    """
+
+    n: int
+    extends: bool
+    L0: float
+    EJ: float
+    EA: float
+    k0: float
+    m: float
+    I_xx: float
+    g: np.ndarray
+    relaxation: float
+    r_h: np.ndarray
+    last: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+
+    @property
+    def numbers(self) -> list[float]:
+        """In the order of ``_Symbols.numbers``."""
+        return [self.L0, self.EJ, self.EA, self.k0, self.m, self.I_xx, *self.g, self.relaxation]
+
+    def tension_along(self, tension: np.ndarray) -> np.ndarray:
+        """Tension of every cable along every segment, shape (cables, n): zero beyond the anchor."""
+        return np.array(tension)[:, None] * (np.arange(1, self.n + 1) <= self.last[:, None])
+
+
+def whole_arm(scene: Scene) -> WholeArm:
+    """Numbers of a scene in the paper's letters."""
+    arm, has = scene.arm, {type(effect): effect for effect in scene.effects}
+    E = arm.youngs_modulus or 0.0
+    cables = arm.cables if Cables in has else ()
+    gravity, damping = has.get(Gravity), has.get(MaterialDamping)
+    force, moment = np.zeros((arm.disks, 2)), np.zeros(arm.disks)
+    for load in getattr(has.get(DiskLoads), "loads", ()):
+        force[load.disk - 1] += load.force
+        moment[load.disk - 1] += load.moment
+    return WholeArm(
+        n=arm.disks,
+        extends=Extension in has,
+        L0=arm.disk_spacing,
+        EJ=E * (arm.second_moment or 0.0),
+        EA=E * (arm.area or 0.0),
+        k0=arm.reference_curvature,
+        m=arm.disk_mass or 0.0,
+        I_xx=(arm.disk_inertia or 0.0) if RotaryInertia in has else 0.0,
+        g=np.array(gravity.acceleration if isinstance(gravity, Gravity) else (0.0, 0.0)),
+        relaxation=damping.retardation_time if isinstance(damping, MaterialDamping) else 0.0,
+        r_h=np.array([cable.hole_offset for cable in cables]),
+        last=np.array([cable.anchor or arm.disks for cable in cables]),
+        force=force,
+        moment=moment,
+    )
+
+
+# ---- scenes and states that the tests share ----
+
+ONE_CABLE = (Cable("upper", 0.008),)
+
+
+def full_scene(disks: int, **changes: Any) -> Scene:
+    """Every effect: a bent core that extends, a cable on either side, loads half-way and at the tip."""
+    cables = (Cable("upper", 0.008), Cable("lower", -0.006, anchor=max(1, disks - 1)))
+    arm = Arm.preset("rone2012", **{"disks": disks, "cables": cables, "reference_curvature": 3.0} | changes)
+    loads = (DiskLoad(disks, (0.4, -0.7), 0.02), DiskLoad((disks + 1) // 2, (-0.3, 0.5), -0.01))
+    at_rest = (Bending(), Extension(), Gravity((1.7, -9.6)), Cables(), DiskLoads(loads))
+    return Scene(arm, (*at_rest, Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)))
+
+
+def stiff_scene(disks: int, **changes: Any) -> Scene:
+    """No extension, one cable, no loads."""
+    arm = Arm.preset("rone2012", **{"disks": disks, "cables": ONE_CABLE} | changes)
+    return Scene(arm, (Bending(), Gravity(), Cables(), Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)))
+
+
+def bare_scene(disks: int) -> Scene:
+    """Point masses on an elastic core: no extension, no cables, no gravity, no rotary inertia, no damping."""
+    return Scene(Arm.preset("rone2012", disks=disks), (Bending(), Inertia()))
+
+
+def random_state(scene: Scene, seed: int, bend: float = 1.5) -> tuple[np.ndarray, np.ndarray]:
+    """Bends from 0.1 rad to ``bend`` of either sign, 3 % of elongation, 30 rad/s and 0.3 m/s at most."""
+    random = np.random.default_rng(seed)
+    shape = scene.arm.disks, len(scene.coordinates)
+    sign = random.choice([-1.0, 1.0], shape[0])
+    q, u = random.uniform(-1, 1, shape), random.uniform(-1, 1, shape)
+    q[:, 0], u[:, 0] = sign * random.uniform(0.1, bend, shape[0]), 30 * u[:, 0]
+    q[:, 1:], u[:, 1:] = 0.03 * scene.arm.disk_spacing * q[:, 1:], 0.3 * u[:, 1:]
+    return q, u
+
+
+def relative_error(actual: np.ndarray, expected: np.ndarray) -> float:
+    """Largest error in each column over the largest entry of that column: bends and elongations apart."""
+    error, size = np.abs(actual - expected).max(axis=0), np.abs(expected).max(axis=0)
+    return float(np.max(error / size))
+
+
+# ---- equations of motion: Kane's method on all bodies at once ----
+
+
+class _Symbols:
+    """What the equations of motion are written in."""
+
+    def __init__(self, n: int, extends: bool, cables: int) -> None:
+        self.phi, self.phi_rate = dynamicsymbols(f"phi1:{n + 1}"), dynamicsymbols(f"omega1:{n + 1}")
+        self.e = dynamicsymbols(f"e1:{n + 1}") if extends else ()
+        self.e_rate = dynamicsymbols(f"v1:{n + 1}") if extends else ()
+        self.numbers = sp.symbols("L0 EJ EA k0 m I_xx g_x g_y relaxation")
+        self.r_h = sp.symbols(f"r1:{cables + 1}")
+        self.tension = sp.Matrix(cables, n, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
+        self.load = sp.Matrix(n, 3, lambda i, a: sp.Symbol(f"load{i}_{a}"))
+        self.q, self.u = [*self.phi, *self.e], [*self.phi_rate, *self.e_rate]
+
+    @property
+    def arguments(self) -> list[Any]:
+        return [self.q, self.u, self.numbers, self.r_h, self.tension.flat(), self.load.flat()]
+
+    def rate(self, expression: Any) -> Any:
+        return sum(sp.diff(expression, q) * u for q, u in zip(self.q, self.u, strict=True))
+
+
+def _place_disks(s: _Symbols) -> tuple[list[ReferenceFrame], list[Point]]:
+    """Frames and centres of the base and of all disks, with their velocities. Rone 2012, Eq. 10-12."""
+    L0 = s.numbers[0]
+    frames, centers = [ReferenceFrame("N")], [Point("O")]
+    base = frames[0]
+    centers[0].set_vel(base, 0)
+    for i, phi in enumerate(s.phi):
+        L = L0 + s.e[i] if s.e else L0
+        k = phi / L
+        x, y = sp.sin(phi) / k, (1 - sp.cos(phi)) / k
+        near, frame = frames[-1], ReferenceFrame(f"A{i + 1}")
+        frame.orient_axis(base, sum(s.phi[: i + 1]), base.z)
+        frame.set_ang_vel(base, sum(s.phi_rate[: i + 1]) * base.z)
+        center = centers[-1].locatenew(f"P{i + 1}", x * near.x + y * near.y)
+        center.set_vel(near, s.rate(x) * near.x + s.rate(y) * near.y)
+        center.v1pt_theory(centers[-1], base, near)
+        frames.append(frame)
+        centers.append(center)
+    return frames, centers
+
+
+def _disk_loads(s: _Symbols, frames: list[ReferenceFrame], centers: list[Point]) -> list[Any]:
+    """Weights (Eq. 19) and dead loads."""
+    *_, m, _I, g_x, g_y, _relaxation = s.numbers
+    base, loads = frames[0], []
+    for i, (frame, center) in enumerate(zip(frames[1:], centers[1:], strict=True)):
+        weight = m * g_x * base.x + m * g_y * base.y
+        loads.append((center, weight + s.load[i, 0] * base.x + s.load[i, 1] * base.y))
+        loads.append((frame, s.load[i, 2] * base.z))
+    return loads
+
+
+def _core_moments(s: _Symbols, frames: list[ReferenceFrame]) -> list[Any]:
+    """Bending moments of a Kelvin-Voigt core on the two disks of every segment (Eq. 20)."""
+    L0, EJ, _EA, k0, *_, relaxation = s.numbers
+    loads: list[Any] = []
+    for i, phi in enumerate(s.phi):
+        moment = EJ * ((phi + relaxation * s.phi_rate[i]) / L0 - k0) * frames[0].z
+        loads += [(frames[i + 1], -moment), (frames[i], moment)]
+    return loads
+
+
+def _axial_forces(s: _Symbols) -> sp.Matrix:
+    """Generalized forces of a Kelvin-Voigt core along its length: they work along e alone."""
+    L0, _EJ, EA, *_, relaxation = s.numbers
+    along = [-EA / L0 * (e + relaxation * rate) for e, rate in zip(s.e, s.e_rate, strict=True)]
+    return sp.Matrix([*[0] * len(s.phi), *along])
+
+
+def _cable_forces(s: _Symbols, c: int, frames: list[ReferenceFrame], centers: list[Point]) -> list[Any]:
+    """One cable's pulls from hole to hole, on both disks of every segment (Eq. 22-24)."""
+    base, loads, holes = frames[0], [], []
+    for frame, center in zip(frames, centers, strict=True):
+        hole = center.locatenew(f"{center.name}_hole{c}", s.r_h[c] * frame.y)
+        hole.v2pt_theory(center, base, frame)
+        holes.append(hole)
+    for i, near in enumerate(frames[:-1]):
+        way = holes[i + 1].pos_from(holes[i]).express(near)
+        pull = s.tension[c, i] * way.normalize()
+        loads += [(holes[i + 1], -pull), (holes[i], pull)]
+    return loads
+
+
+@cache
+def kane_equations(n: int, extends: bool, cables: int) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
+    """Mass matrix M and forcing f of M u' = f, rates of all bends before those of all elongations."""
+    s = _Symbols(n, extends, cables)
+    frames, centers = _place_disks(s)
+    m, I_xx = s.numbers[4:6]
+    disks = [
+        RigidBody(f"disk{i}", centers[i], frames[i], m, (inertia(frames[i], 0, 0, I_xx), centers[i]))
+        for i in range(1, n + 1)
+    ]
+    loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames)]
+    for c in range(cables):
+        loads += _cable_forces(s, c, frames, centers)
+    kane = KanesMethod(
+        frames[0], s.q, s.u, kd_eqs=[sp.diff(q, "t") - u for q, u in zip(s.q, s.u, strict=True)]
+    )
+    kane.kanes_equations(disks, loads)
+    return s, kane.mass_matrix, kane.forcing + _axial_forces(s)
+
+
+@cache
+def _kane_function(n: int, extends: bool, cables: int, module: str) -> Callable[..., Any]:
+    s, mass, forcing = kane_equations(n, extends, cables)
+    return sp.lambdify(s.arguments, (mass, forcing), modules=module, cse=True)
+
+
+def _arguments(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> list[np.ndarray]:
+    load = np.column_stack([arm.force, arm.moment])
+    tensions = arm.tension_along(tension)
+    return [q.T.ravel(), u.T.ravel(), np.array(arm.numbers), arm.r_h, tensions.ravel(), load.ravel()]
+
+
+def mass_and_forcing(
+    arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """M, shape (q.size, q.size), and f, shape (q.size,), at one state."""
+    mass, forcing = _kane_function(arm.n, arm.extends, len(arm.r_h), "numpy")(*_arguments(arm, q, u, tension))
+    return mass, forcing[:, 0]
+
+
+def accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> np.ndarray:
+    """Time derivative of u by Kane's method, shape of q."""
+    return np.linalg.solve(*mass_and_forcing(arm, q, u, tension)).reshape(-1, arm.n).T
+
+
+def precise_accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> np.ndarray:
+    """Likewise in 200 digits, with 1e-40 rad for the bend of a straight segment: an error of that size."""
+    bent = q.astype(object)  # mpf takes numbers and text alike
+    bent[q[:, 0] == 0, 0] = "1e-40"
+    with mpmath.workdps(200):
+        numbers = [[mpmath.mpf(value) for value in values] for values in _arguments(arm, bent, u, tension)]
+        solution = mpmath.lu_solve(*_kane_function(arm.n, arm.extends, len(arm.r_h), "mpmath")(*numbers))
+        return np.array(solution, dtype=float).reshape(-1, arm.n).T
+
+
+# ---- energy: numpy, in complex numbers ----
+
+
+def poses(arm: WholeArm, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x, y, theta of all disks, each of shape (n,). Rone 2012, Eq. 10-12."""
+    phi, L = q[:, 0], arm.L0 + (q[:, 1] if arm.extends else np.zeros(arm.n))
+    k = phi / L
+    x, y = np.sin(k * L) / k, (1 - np.cos(k * L)) / k
+    theta = np.cumsum(phi)
+    near = theta - phi
+    return (
+        np.cumsum(np.cos(near) * x - np.sin(near) * y),
+        np.cumsum(np.sin(near) * x + np.cos(near) * y),
+        theta,
+    )
+
+
+def cable_lengths(arm: WholeArm, q: np.ndarray) -> np.ndarray:
+    """Hole-to-hole lengths from the holes' positions, shape (cables, n). Rone 2012, Eq. 22-23."""
+    x, y, theta = (np.concatenate([[0], values]) for values in poses(arm, q))
+    lengths = np.empty((len(arm.r_h), arm.n), dtype=q.dtype)
+    for c, r_h in enumerate(arm.r_h):
+        across, up = np.diff(x - r_h * np.sin(theta)), np.diff(y + r_h * np.cos(theta))
+        lengths[c] = np.sqrt(across**2 + up**2)
+    return lengths
+
+
+def elastic_energy(arm: WholeArm, q: np.ndarray) -> Any:
+    """Of the core, zero where it is unloaded, J."""
+    energy = arm.EJ / (2 * arm.L0) * np.sum((q[:, 0] - arm.k0 * arm.L0) ** 2)
+    return energy + (arm.EA / (2 * arm.L0) * np.sum(q[:, 1] ** 2) if arm.extends else 0)
+
+
+def gravity_energy(arm: WholeArm, q: np.ndarray) -> Any:
+    """Of the disks, zero at the base, J."""
+    x, y, _ = poses(arm, q)
+    return -arm.m * (arm.g[0] * np.sum(x) + arm.g[1] * np.sum(y))
+
+
+def load_energy(arm: WholeArm, q: np.ndarray) -> Any:
+    """Of the dead loads: -F . p - M theta, J."""
+    x, y, theta = poses(arm, q)
+    return -(arm.force[:, 0] @ x + arm.force[:, 1] @ y + arm.moment @ theta)
+
+
+def cable_energy(arm: WholeArm, q: np.ndarray, tension: np.ndarray) -> Any:
+    """Tension times length up to the anchor, J."""
+    return np.sum(arm.tension_along(tension) * cable_lengths(arm, q))
+
+
+def potential_energy(arm: WholeArm, q: np.ndarray, tension: np.ndarray) -> Any:
+    """Of all that acts at rest, J."""
+    core = elastic_energy(arm, q) + gravity_energy(arm, q)
+    return core + load_energy(arm, q) + cable_energy(arm, q, tension)
+
+
+# ---- derivatives of any function ----
+
+
+def directional(function: Callable[[np.ndarray], Any], q: np.ndarray, direction: np.ndarray) -> Any:
+    """Slope along a direction by a complex step: no difference is taken, so none is lost."""
+    return np.imag(function(q + 1e-30j * direction)) / 1e-30
+
+
+def gradient(function: Callable[[np.ndarray], Any], q: np.ndarray) -> np.ndarray:
+    """All derivatives by the entries of q, shape (*q.shape, *value's shape)."""
+    columns = np.eye(q.size).reshape(-1, *q.shape)
+    values = np.array([directional(function, q, column) for column in columns])
+    return values.reshape(*q.shape, *values.shape[1:])
+
+
+def difference_matrix(
+    function: Callable[[np.ndarray], np.ndarray], y: np.ndarray, steps: Iterable[float]
+) -> np.ndarray:
+    """Matrix of a vector's derivatives, shape (values, y.size), by central differences of sixth order."""
+    columns = []
+    for column, step in zip(np.eye(y.size), steps, strict=True):
+        ahead = [function(y + k * step * column) - function(y - k * step * column) for k in (1, 2, 3)]
+        columns.append((45 * ahead[0] - 9 * ahead[1] + ahead[2]) / (60 * step))
+    return np.column_stack(columns)
