@@ -51,7 +51,7 @@ def test_key_follows_structure_not_numbers(tmp_path: Path) -> None:
 
 
 def test_kernel_is_written_once_and_opens_with_what_made_it(own_cache: Path, paper_arm: Scene) -> None:
-    equilibrium(paper_arm, 1.0)
+    codegen.load(paper_arm, RECIPE)
     (path,) = own_cache.glob("*.py")
     text, written = path.read_text(), path.stat().st_mtime_ns
     for words in (
@@ -62,27 +62,32 @@ def test_kernel_is_written_once_and_opens_with_what_made_it(own_cache: Path, pap
     ):
         assert words in text
     codegen._loaded.clear()
-    equilibrium(paper_arm, 2.0)
+    codegen.load(rone2012(disks=9, stiffness=0.1), RECIPE)
     assert path.stat().st_mtime_ns == written
     assert own_cache.stat().st_mode & 0o777 == 0o700
 
 
-@pytest.mark.parametrize("damage", ["truncated", "edited"])
+@pytest.mark.parametrize("damage", ["truncated", "edited", "binary"])
 def test_damaged_kernel_is_made_again(own_cache: Path, paper_arm: Scene, damage: str) -> None:
-    expected = equilibrium(paper_arm, 1.0).tip
+    codegen.load(paper_arm, RECIPE)
     (path,) = own_cache.glob("*.py")
-    whole = path.read_text()
-    path.write_text(whole[:500] if damage == "truncated" else whole.replace("force_x", "force_y"))
+    whole = path.read_bytes()
+    spoiled = {
+        "truncated": whole[:500],
+        "edited": whole.replace(b"force_x", b"force_y"),
+        "binary": b"\xff\x00",
+    }
+    path.write_bytes(spoiled[damage])
     codegen._loaded.clear()
-    assert equilibrium(paper_arm, 1.0).tip == expected
-    assert path.read_text() == whole
+    codegen.load(paper_arm, RECIPE)
+    assert path.read_bytes() == whole
 
 
 def test_folder_that_others_may_write_to_is_refused(own_cache: Path, paper_arm: Scene) -> None:
     own_cache.mkdir()
     own_cache.chmod(0o777)
     with pytest.raises(KernelCacheError, match="chmod 700"):
-        equilibrium(paper_arm, 1.0)
+        codegen.load(paper_arm, RECIPE)
 
 
 def test_folder_that_cannot_be_made_is_refused(
@@ -92,7 +97,7 @@ def test_folder_that_cannot_be_made_is_refused(
     monkeypatch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path / "file" / "kernels"))
     monkeypatch.setattr(codegen, "_loaded", {})
     with pytest.raises(KernelCacheError, match="CONTINUUM_DYN_CACHE"):
-        equilibrium(paper_arm, 1.0)
+        codegen.load(paper_arm, RECIPE)
 
 
 def test_size_of_the_generated_source_does_not_depend_on_the_number_of_disks() -> None:
