@@ -29,7 +29,7 @@ format: $(VENV)/dev ## Put the code into its house style.
 	$(BIN)/ruff format
 
 types: $(VENV)/dev
-	$(BIN)/pyright
+	$(BIN)/pyright --pythonpath $(BIN)/python
 
 contracts: $(VENV)/dev
 	$(BIN)/lint-imports
