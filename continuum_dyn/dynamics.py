@@ -1,9 +1,12 @@
 """A scene's compiled equations of motion, under the names that an integrator asks for."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from continuum_dyn import implicit_kernel
 from continuum_dyn.motion_kernel import RECIPE
 from continuum_dyn.profiles import Span
 from statics import codegen
@@ -85,13 +88,13 @@ class Dynamics:
         q = np.tile([1.0, arm.rest_length][: self.dofs], arm.disks)
         return np.concatenate([q, self.frequency * q, np.full(2, energy)])
 
-    def warm_up(self, span: Span) -> None:
-        """Compile the kernel, or load it compiled, so that what follows is solving alone."""
-        y = self.state(np.zeros((self.scene.arm.disks, self.dofs)))
-        self.rate(span.start, y, span)
-        self.jacobian(span.start, y, span)
-        self.clearance(y)
-        self.observe(y[None, :], span.tension(np.array([span.start])))
+    @cached_property
+    def implicit(self) -> tuple[Any, np.ndarray, np.ndarray]:
+        """The kernel of implicit steps, with its segment and disk tables."""
+        kernel = codegen.load(self.scene, implicit_kernel.RECIPE)
+        tables = ("segment", kernel.SEGMENT_COLUMNS), ("disk", kernel.DISK_COLUMNS)
+        segments, disks = (self.scene.table(place, columns) for place, columns in tables)
+        return kernel, segments, disks
 
     def split(self, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates and rates, each (samples, disks, dofs), of states (samples, size)."""

@@ -5,6 +5,7 @@ import numpy as np
 Carried = tuple[float, ...]
 
 CHAIN_COLUMNS: int
+DISPLACEMENT_START: Carried
 ELIMINATE_START: Carried
 MOTION_START: Carried
 MOTION_TANGENT_START: Carried
@@ -49,3 +50,4 @@ def observe_step(
     pose: np.ndarray,
     velocity: np.ndarray,
 ) -> Carried: ...
+def displacement_step(i: int, carried: Carried, chain: np.ndarray, change: np.ndarray) -> Carried: ...

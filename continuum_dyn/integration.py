@@ -4,6 +4,7 @@ Integration restarts at every corner of a tension profile, so that no step cross
 """
 
 import warnings
+from collections import Counter
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -17,11 +18,22 @@ from continuum_dyn.study import Solver
 from continuum_dyn.trajectory import Trajectory, trajectory_of
 from statics.outcome import Outcome
 
-COUNTERS = {"nfev": "evaluations", "njev": "jacobians", "nlu": "decompositions"}
-"""What SciPy's solvers count, and what we call it."""
+BRIEF = 1e-12
+"""Duration of the motion that only loads what is compiled, s."""
 
 FIRST_STEP = 1e-3
 """First step of each span, in radians of the arm's lowest frequency or of the drive's, if that is higher."""
+
+
+def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
+    """Compile what the method needs, or load it compiled, so that what follows is solving alone."""
+    brief = Span(span.start, span.start + BRIEF, span.pieces)
+    y = dynamics.state(np.zeros((dynamics.scene.arm.disks, dynamics.dofs)))
+    dynamics.clearance(y)
+    if solver.method in IMPLICIT:
+        dynamics.jacobian(span.start, y, span)
+    unwatched = Monitor(inspect=lambda _t, _y: None)
+    integrate(dynamics, [brief], np.array([brief.start, brief.end]), y, solver, unwatched)
 
 
 class _Samples(NamedTuple):
@@ -60,7 +72,7 @@ def integrate(
     """
     monitor.reached = (0.0, y)
     parts = [_Samples(samples[:1], y[None, :], stretches[0].tension(samples[:1]))]
-    counters = dict.fromkeys(COUNTERS.values(), 0)
+    counters: Counter[str] = Counter()
     with interruptible(monitor), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for span in stretches:
@@ -71,13 +83,15 @@ def integrate(
             time = np.array(solution.t[: len(inside)], dtype=float)
             states = np.reshape(solution.y, (dynamics.state_size, -1)).T[: len(time)]
             parts.append(_Samples(time, states, span.tension(time)))
-            for theirs, ours in COUNTERS.items():
-                counters[ours] += int(getattr(solution, theirs))
+            counters.update(_counted(solution, dynamics, solver))
             if solution.status != 0:
                 parts.append(_last_reached(parts, span, monitor.reached))
                 break
     times, states, tension = (np.concatenate(column) for column in zip(*parts, strict=True))
-    whole = trajectory_of(dynamics, times, states, tension, {"steps": monitor.steps, **counters})
+    counters["steps"] = monitor.steps
+    if solver.method == "chain":
+        counters["rejections"] = monitor.rejections
+    whole = trajectory_of(dynamics, times, states, tension, dict(counters))
     finite = whole.finite()
     if finite.time.size < whole.time.size:
         monitor.stop(Outcome.DIVERGED, f"energies overflow at t = {times[finite.time.size]:.6g} s")
@@ -90,6 +104,22 @@ def _last_reached(parts: list[_Samples], span: Span, reached: tuple[float, np.nd
     sampled = any(part.time.size and part.time[-1] >= t for part in parts)
     time = np.array([] if sampled else [t])
     return _Samples(time, np.tile(y, (time.size, 1)), span.tension(time))
+
+
+def _counted(solution: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
+    """What a span cost: the solver's own counts, and machine-independent work in segment evaluations.
+
+    One is a segment's part of a right-hand side, of a Newton iteration, or of one column of a Jacobian.
+    """
+    n, columns = dynamics.scene.arm.disks, 2 * dynamics.size
+    if solver.method == "chain":
+        return {"newton_iterations": solution.nfev, "segment_evaluations": solution.nfev * n}
+    return {
+        "evaluations": int(solution.nfev),
+        "jacobians": int(solution.njev),
+        "decompositions": int(solution.nlu),
+        "segment_evaluations": int(solution.nfev + solution.njev * columns) * n,
+    }
 
 
 def _first_step(dynamics: Dynamics, span: Span) -> float:
@@ -106,9 +136,18 @@ def _solve_span(dynamics: Dynamics, solver: Solver, span: Span, at: np.ndarray, 
         monitor.reached[1],
         method=METHODS[solver.method],
         t_eval=np.unique(at),
-        rtol=solver.rtol,
-        atol=solver.atol * dynamics.scales(),
         first_step=_first_step(dynamics, span),
         monitor=monitor,
-        **({"jac": lambda t, y: dynamics.jacobian(t, y, span)} if solver.method in IMPLICIT else {}),
+        **_options(dynamics, solver, span),
     )
+
+
+def _options(dynamics: Dynamics, solver: Solver, span: Span) -> dict[str, Any]:
+    """What the method needs beside the equations."""
+    if solver.method == "chain":
+        allowed = (solver.rtol + solver.atol) * dynamics.scene.arm.total_length
+        return {"dynamics": dynamics, "span": span, "tolerance": allowed}
+    tolerances = {"rtol": solver.rtol, "atol": solver.atol * dynamics.scales()}
+    if solver.method in IMPLICIT:
+        return tolerances | {"jac": lambda t, y: dynamics.jacobian(t, y, span)}
+    return tolerances

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integration import inspector, integrate
+from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Budget, Monitor
 from continuum_dyn.profiles import spans
 from continuum_dyn.settling import settled, tip_gap
@@ -96,7 +96,7 @@ def _motion(
     statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
     stretches = spans(scenario.profiles, study.duration)
     statics.warm_up()
-    dynamics.warm_up(stretches[0])
+    warm_up(dynamics, scenario.solver, stretches[0])
     started = time.perf_counter()
     start = statics.solve(scenario.initial_tension)
     if not start.found:

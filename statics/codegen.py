@@ -14,6 +14,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
@@ -68,14 +69,21 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
 
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
-    digest = hashlib.sha256()
     structure = (recipe.kind, scene.coordinates, scene.cables, [effect.name for effect in scene.effects])
-    versions = [platform.python_version(), *(version(name) for name in ("numba", "numpy", "sympy"))]
-    digest.update(repr((structure, versions)).encode())
     effects = (sys.modules[type(effect).__module__].__file__ for effect in scene.effects)
-    for source in (*recipe.sources, *(Path(file) for file in effects if file)):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:24]
+    files = (*recipe.sources, *(Path(file) for file in effects if file))
+    sources = [_digest(file, file.stat().st_mtime_ns) for file in files]
+    return hashlib.sha256(repr((structure, _versions(), sources)).encode()).hexdigest()[:24]
+
+
+@cache
+def _digest(file: Path, _changed: int) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+@cache
+def _versions() -> list[str]:
+    return [platform.python_version(), *(version(name) for name in ("numba", "numpy", "sympy"))]
 
 
 def kernel_folder() -> Path:

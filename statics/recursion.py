@@ -176,9 +176,9 @@ def placed(expression: Any, at_disk: dict[sp.Symbol, Any]) -> Any:
 def name_forces(trace: Trace, forces: SceneForces, at_disk: dict[sp.Symbol, Any]) -> None:
     """Name the generalized forces and their derivatives for the inward sweeps."""
     trace.let("segment_force", forces.on_segment.force)
-    trace.symmetric("segment_stiffness", forces.on_segment.stiffness)
     trace.let("disk_force", placed(forces.on_disk.force, at_disk))
     for name in ("mass", "damping", "stiffness"):
+        trace.symmetric(f"segment_{name}", getattr(forces.on_segment, name))
         trace.symmetric(f"disk_{name}", placed(getattr(forces.on_disk, name), at_disk))
 
 
@@ -243,15 +243,26 @@ def residual_step(forces: SceneForces) -> Step:
 
 @dataclass(frozen=True)
 class Weights:
-    """A Newton matrix: mass M + damping C + stiffness K, each times its weight."""
+    """A Newton matrix: mass M + damping C + stiffness K, each times its weight.
+
+    A weight may be a number, or a symbol whose value the sweep is handed. ``definite`` says that the
+    matrix is taken as positive, so that its pivots need no care.
+    """
 
     mass: Any
     damping: Any
     stiffness: Any
+    definite: bool = True
+
+    @property
+    def handed(self) -> list[sp.Symbol]:
+        """The weights that are symbols."""
+        return [w for w in (self.mass, self.damping, self.stiffness) if isinstance(w, sp.Symbol)]
 
 
-STATIC = Weights(0, 0, 1)
+STATIC = Weights(0, 0, 1, definite=False)
 ACCELERATION = Weights(1, 0, 0)
+IMPLICIT = Weights(1, symbol("damping_weight"), symbol("stiffness_weight"))
 
 
 def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
@@ -285,11 +296,11 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
         "Inwards: one segment's coordinates eliminated; the rest goes to its near disk.",
         ("segments", "disks", "chain", "residual", "descent", "pivots"),
         trace,
-        results=results,
+        results={str(weight): (0.0, weight) for weight in weights.handed} | results,
         carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r in range(3) for c in range(r, 3)}
         | {f"carried_load_{r}": (0.0, next_load[r]) for r in range(3)},
         stores={"descent": list(descent)}
-        | ({"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]} if results else {}),
+        | ({} if weights.definite else {"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]}),
     )
 
 
@@ -304,11 +315,11 @@ def _weighted(weights: Weights, forces: Any, place: str) -> sp.Matrix:
 def _pivot_inverse(trace: Trace, A: sp.Matrix, weights: Weights) -> tuple[sp.Matrix, dict[str, Any]]:
     """The pivot's inverse and what the sweep counts.
 
-    A mass matrix is positive: nothing to count. Where the matrix may be indefinite the pivot is made
-    positive, unless the sweep is asked to keep its sign.
+    Where the matrix may be indefinite the pivot is made positive, unless the sweep is asked to keep its
+    sign; otherwise there is nothing to count.
     """
     dofs = A.shape[0]
-    if weights.stiffness == 0:
+    if weights.definite:
         return _plain_inverse(trace, A), {}
     entries = [(r, c) for r in range(dofs) for c in range(r, dofs)]
     units = [symbol("rest_length")] if dofs == 2 else []
@@ -350,4 +361,21 @@ def substitute_step(forces: SceneForces) -> Step:
         trace,
         carried={str(name): (0.0, value) for name, value in zip(near, far, strict=True)},
         stores={"change": list(change)},
+    )
+
+
+def displacement_step(forces: SceneForces) -> Step:
+    """Outwards: how far each disk moves under a small change of coordinates."""
+    trace = Trace()
+    reach = reach_of(forces)
+    near = sp.Matrix([symbol(name) for name in ("shift_x", "shift_y", "shift_theta")])
+    change = sp.Matrix([symbol(f"change_{a}") for a in range(len(forces.segment.coordinates))])
+    far = trace.let("far_shift", reach.transition * near + reach.partials * change)
+    return Step(
+        "displacement_step",
+        "Outwards: largest squared displacement of a disk under a small change of coordinates.",
+        ("chain", "change"),
+        trace,
+        results={"largest": (0.0, sp.Max(symbol("largest"), far[0] ** 2 + far[1] ** 2))},
+        carried={str(name): (0.0, value) for name, value in zip(near, far, strict=True)},
     )

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.integrators import METHODS
 from continuum_dyn.profiles import TIME_RESOLUTION, Constant, Profile, Ramp, Sine, Step, Table, spans
-from continuum_dyn.study import MotionStudy
+from continuum_dyn.study import Method, MotionStudy, Solver
 from statics import InputError
 
 
@@ -66,19 +66,20 @@ def test_every_corner_of_every_profile_ends_a_span() -> None:
     assert all(earlier.end == later.start for earlier, later in pairwise(stretches))
 
 
-def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("method", ["chain", "LSODA"])
+def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     taken: list[tuple[float, float]] = []
-    plain_step = METHODS["LSODA"].step
+    plain_step = METHODS[method].step
 
     def noted(solver: object) -> object:
         message = plain_step(solver)  # pyright: ignore[reportArgumentType]
         taken.append((solver.t_old, solver.t))  # pyright: ignore[reportAttributeAccessIssue]
         return message
 
-    monkeypatch.setattr(METHODS["LSODA"], "step", noted)
+    monkeypatch.setattr(METHODS[method], "step", noted)
     corners = (0.0123, 0.0301, 0.0456)
     profile = Table((0.0, *corners), (0.0, 1.0, 0.2, 0.9))
-    run = simulate(Scenario(moving(rone2012()), (profile,), MotionStudy(0.08, samples=9)))
+    run = simulate(Scenario(moving(rone2012()), (profile,), MotionStudy(0.08, samples=9), Solver(method)))
     assert run.trajectory is not None
     assert not [(a, b, c) for a, b in taken for c in corners if a < c < b]
     assert set(corners) <= {end for _, end in taken}

@@ -2,14 +2,18 @@
 
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 
+from continuum_dyn.integrators.chain_solver import ChainSolver
 from continuum_dyn.integrators.guard import Budget, Guard, Monitor, interruptible
 
 IMPLICIT = ("Radau", "BDF", "LSODA")
-"""Methods that use the Jacobian."""
+"""SciPy's methods that use the Jacobian."""
 
 METHODS: dict[str, type[OdeSolver]] = {
-    method.__name__: type(f"Guarded{method.__name__}", (Guard, method), {})
-    for method in (RK23, RK45, DOP853, Radau, BDF, LSODA)
+    name: type(f"Guarded{method.__name__}", (Guard, method), {})
+    for name, method in {
+        "chain": ChainSolver,
+        **{method.__name__: method for method in (RK23, RK45, DOP853, Radau, BDF, LSODA)},
+    }.items()
 }
 
-__all__ = ["IMPLICIT", "METHODS", "Budget", "Guard", "Monitor", "interruptible"]
+__all__ = ["IMPLICIT", "METHODS", "Budget", "ChainSolver", "Guard", "Monitor", "interruptible"]

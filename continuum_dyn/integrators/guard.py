@@ -38,6 +38,7 @@ class Monitor:
     progress: Callable[[float], None] | None = None
     budget: Budget = Budget()
     steps: int = 0
+    rejections: int = 0
     started: float = field(default_factory=time.monotonic)
     interrupted: bool = False
     reached: tuple[float, np.ndarray] = (0.0, np.zeros(0))
@@ -50,9 +51,9 @@ class Monitor:
             self.outcome, self.message = outcome, message
         return self.message
 
-    def after_step(self, t: float, y: np.ndarray) -> str | None:
-        """Count an accepted step and check it; a text says that it must be the last."""
-        self.steps += 1
+    def after_step(self, t: float, y: np.ndarray, steps: int) -> str | None:
+        """Count accepted steps and check the last one; a text says that it must stay the last."""
+        self.steps += steps
         found = self.inspect(t, y)
         if found is not None:
             return self.stop(*found)
@@ -69,7 +70,15 @@ class Monitor:
 
 
 class Guard(OdeSolver):
-    """Mixin before a solver class: the same steps, watched. Takes ``monitor`` as a solver option."""
+    """Mixin before a solver class: the same steps, watched. Takes ``monitor`` as a solver option.
+
+    A solver whose step is many may count them in ``internal_steps`` and ``internal_rejections``; it should
+    take no more than ``steps_left``.
+    """
+
+    internal_steps = 1
+    internal_rejections = 0
+    steps_left = 1
 
     def __init__(self, *arguments: Any, monitor: Monitor, **options: Any) -> None:
         self.monitor = monitor
@@ -77,6 +86,7 @@ class Guard(OdeSolver):
 
     def step(self) -> str | None:
         """One step of the solver; failed if the solver fails or the monitor objects."""
+        self.steps_left = self.monitor.budget.steps - self.monitor.steps
         try:
             with np.errstate(all="ignore"):
                 message = super().step()
@@ -85,7 +95,8 @@ class Guard(OdeSolver):
             return self.monitor.stop(Outcome.DIVERGED, f"{error} after t = {self.t:.6g} s")
         if self.status == "failed":
             return self.monitor.stop(Outcome.DIVERGED, f"{message} at t = {self.t:.6g} s")
-        objection = self.monitor.after_step(self.t, self.y)
+        self.monitor.rejections += self.internal_rejections
+        objection = self.monitor.after_step(self.t, self.y, self.internal_steps)
         if objection is not None:
             self.status = "failed"
             return objection

@@ -1,0 +1,107 @@
+"""The chain's own implicit integrator behind SciPy's interface: many compiled steps to one call."""
+
+from typing import Any
+
+import numpy as np
+from scipy.integrate import DenseOutput, OdeSolver
+
+from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.integrators.esdirk import TOO_SMALL
+from continuum_dyn.integrators.tableau import ESDIRK5, Tableau
+from continuum_dyn.profiles import Span
+
+BATCH = 256
+"""Most internal steps to one step of SciPy's: a call through ``solve_ivp`` costs as much as one of them."""
+
+FIRST_PART = 0.01
+"""Part of the tolerance by which the first step may displace a disk: it resolves the layer after a jump."""
+
+
+class ChainSolver(OdeSolver):
+    """ESDIRK on the chain, O(n) a stage, error in metres: for ``solve_ivp(..., method=ChainSolver)``.
+
+    Options: ``dynamics`` and ``span``, whose right-hand side this is (``fun`` is not called); ``tolerance``,
+    the largest displacement (m) of any disk by the error of one step; ``first_step`` (s), at most;
+    ``tableau``. ``internal_steps`` and ``internal_rejections`` count those of the last call, which takes no
+    more than ``steps_left``.
+    """
+
+    steps_left = BATCH
+
+    def __init__(
+        self,
+        fun: Any,
+        t0: float,
+        y0: np.ndarray,
+        t_bound: float,
+        vectorized: bool = False,
+        *,
+        dynamics: Dynamics,
+        span: Span,
+        tolerance: float,
+        first_step: float,
+        tableau: Tableau = ESDIRK5,
+    ) -> None:
+        super().__init__(fun, t0, y0, t_bound, vectorized)
+        self.kernel, segments, disks = dynamics.implicit
+        self.arm = (span.pieces, segments, disks)
+        self.method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor)
+        self.order = tableau.order
+        self.tolerance = tolerance
+        shape = (BATCH + 1, dynamics.scene.arm.disks, dynamics.dofs)
+        self.records = (
+            np.empty(shape[0]),
+            np.empty((shape[0], y0.size)),
+            np.empty(shape),
+            np.empty((shape[0], 2)),
+        )
+        push = self.kernel.start_records(t0, np.asarray(y0, dtype=float), self.arm, self.records)
+        resolved = np.sqrt(2.0 * FIRST_PART * tolerance / push) if push > 0.0 else np.inf
+        self.next_step = min(first_step, resolved)
+        self.rate = 0.1
+        self.internal_steps = self.internal_rejections = 0
+
+    def _step_impl(self) -> tuple[bool, str | None]:
+        for column in self.records:
+            column[0] = column[self.internal_steps]
+        rows = min(BATCH, self.steps_left) + 1
+        ended, taken, self.next_step, self.rate, rejected, iterations = self.kernel.advance(
+            self.t_bound,
+            self.next_step,
+            self.rate,
+            tuple(column[:rows] for column in self.records),
+            self.method,
+            self.order,
+            self.tolerance,
+            self.arm,
+        )
+        self.internal_steps, self.internal_rejections = taken, rejected
+        self.nfev += iterations
+        self.njev += iterations
+        self.nlu += iterations
+        if taken == 0:
+            reason = "step size fell below rounding" if ended == TOO_SMALL else "no step was possible"
+            return False, f"{reason} ({self.next_step:.3g} s)"
+        self.t, self.y = float(self.records[0][taken]), self.records[1][taken].copy()
+        return True, None
+
+    def _dense_output_impl(self) -> DenseOutput:
+        rows = slice(0, self.internal_steps + 1)
+        return ChainInterpolant(self.kernel, tuple(column[rows].copy() for column in self.records))
+
+
+class ChainInterpolant(DenseOutput):
+    """The state within a batch of steps: quintic Hermite polynomials of the coordinates."""
+
+    def __init__(self, kernel: Any, records: tuple[np.ndarray, ...]) -> None:
+        super().__init__(float(records[0][0]), float(records[0][-1]))
+        self.kernel, self.records = kernel, records
+
+    def _call_impl(self, t: np.ndarray) -> np.ndarray:
+        at = np.atleast_1d(t)
+        order = np.argsort(at, kind="stable")
+        found = np.empty((at.size, self.records[1].shape[1]))
+        self.kernel.interpolate(at[order], self.records, found)
+        states = np.empty_like(found)
+        states[order] = found
+        return states[0] if np.ndim(t) == 0 else states.T

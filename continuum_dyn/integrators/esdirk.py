@@ -1,0 +1,329 @@
+"""Steps of a diagonally implicit Runge-Kutta method on the chain: plain Python, composed into kernels.
+
+Because q' = u, the acceleration w is the only unknown of a stage: with g = gamma h,
+
+    u = U + g w,   q = Q + g u,   r(q, u, w) = 0,   Newton matrix M + g C + g^2 K
+
+U and Q are known from the stages before. The matrix leaves out the velocity's own terms, so that it is the
+chain's; Newton's method then takes about two iterations. Errors are metres: the largest displacement of a
+disk under the error of the coordinates.
+
+Arguments travel in groups:
+
+- ``arm``: pieces of the tension profiles, segment table, disk table;
+- ``method``: a, c, error weights, predictor of the tableau;
+- ``stages``: q, u, w, shape (stages, n, dofs);
+- ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 2): row r is the end of step r.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from continuum_dyn.equations_of_motion import acceleration, motion_sweep, tension_at
+    from continuum_dyn.generated import CHAIN_COLUMNS, DISPLACEMENT_START, ELIMINATE_START, displacement_step
+    from statics.chain import clearance_sweep, eliminate_sweep, residual_sweep, substitute_sweep
+
+    Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+    Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+    Moving = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+MOST_ITERATIONS = 8
+"""Newton iterations after which a stage is given up."""
+STAGE_PART = 0.02
+"""Part of the tolerance that a stage's equations may be off by."""
+SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
+
+GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
+
+
+def displacement(chain: np.ndarray, change: np.ndarray) -> float:
+    """Largest displacement (m) of a disk under a small change of coordinates, shape (n, dofs)."""
+    carried = DISPLACEMENT_START
+    for i in range(change.shape[0]):
+        carried = displacement_step(i, carried, chain, change)
+    return math.sqrt(carried[0])
+
+
+def solve_stage(
+    known_q: np.ndarray,
+    known_u: np.ndarray,
+    g: float,
+    allowed: float,
+    rate: float,
+    stage: "Moving",
+    tension: np.ndarray,
+    arm: "Moving",
+    chain: np.ndarray,
+    work: np.ndarray,
+) -> tuple[int, float, float, float]:
+    """Newton's method for one ``stage``: its q, u and w (n, dofs), w from its predictor; ``allowed`` in m.
+
+    Returns the iterations (negative if it did not converge), the rate of convergence, power in and power
+    dissipated.
+    """
+    q, u, w = stage
+    _, segments, disks = arm
+    residual, descent, change = work[0], work[1], work[2]
+    start = (g, g * g, *ELIMINATE_START[2:])
+    power_in, dissipated, last = 0.0, 0.0, 0.0
+    iterations = 0
+    while True:
+        for i in range(q.shape[0]):
+            for k in range(q.shape[1]):
+                u[i, k] = known_u[i, k] + g * w[i, k]
+                q[i, k] = known_q[i, k] + g * u[i, k]
+        if iterations < 0 or (iterations > 0 and last * rate <= allowed * (1.0 - rate)):
+            return iterations, rate, power_in, dissipated
+        if iterations == MOST_ITERATIONS:
+            return -iterations, rate, power_in, dissipated
+        power_in, dissipated = motion_sweep(q, u, w, tension, segments, disks, chain)
+        residual_sweep(disks, chain, residual)
+        eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
+        substitute_sweep(chain, descent, change)
+        size = g * g * displacement(chain, change)
+        for i in range(q.shape[0]):
+            for k in range(q.shape[1]):
+                w[i, k] += change[i, k]
+        if iterations > 0:
+            rate = max(0.3 * rate, size / max(last, 1e-300))
+        last = size
+        iterations += 1
+        if rate >= 0.9 or not math.isfinite(size):
+            return -iterations, 0.5, power_in, dissipated
+
+
+def step_once(
+    t: float,
+    h: float,
+    y: np.ndarray,
+    rate: float,
+    method: "Method",
+    tolerance: float,
+    arm: "Moving",
+    chain: np.ndarray,
+    work: np.ndarray,
+    stages: "Moving",
+    next_y: np.ndarray,
+    next_power: np.ndarray,
+) -> tuple[float, float, int]:
+    """All stages of one step from (t, y), whose first acceleration is known.
+
+    The new state goes into ``next_y`` (without the integrals of the power), its powers into ``next_power``;
+    its acceleration is the last stage's. Returns the error (m; infinite if a stage did not converge), the
+    rate of convergence, and the Newton iterations.
+    """
+    a, c, error_weights, predictor = method
+    stage_q, stage_u, stage_w = stages
+    count, n, dofs = stage_w.shape
+    size = n * dofs
+    stage_q[0] = y[:size].reshape((n, dofs))
+    stage_u[0] = y[size : 2 * size].reshape((n, dofs))
+    tension = np.empty(arm[0].shape[0])
+    known_q, known_u, error = work[3], work[4], work[5]
+    iterations = 0
+    for s in range(1, count):
+        for i in range(n):
+            for k in range(dofs):
+                q_sum, u_sum, w_sum = 0.0, 0.0, 0.0
+                for j in range(s):
+                    q_sum += a[s, j] * stage_u[j, i, k]
+                    u_sum += a[s, j] * stage_w[j, i, k]
+                    w_sum += predictor[s, j] * stage_w[j, i, k]
+                known_q[i, k] = stage_q[0, i, k] + h * q_sum
+                known_u[i, k] = stage_u[0, i, k] + h * u_sum
+                stage_w[s, i, k] = w_sum
+        tension_at(t + c[s] * h, arm[0], tension)
+        took, rate, next_power[0], next_power[1] = solve_stage(
+            known_q,
+            known_u,
+            a[s, s] * h,
+            STAGE_PART * tolerance,
+            rate,
+            (stage_q[s], stage_u[s], stage_w[s]),
+            tension,
+            arm,
+            chain,
+            work,
+        )
+        iterations += abs(took)
+        if took < 0:
+            return math.inf, rate, iterations
+    last = count - 1
+    next_y[:size] = stage_q[last].ravel()
+    next_y[size : 2 * size] = stage_u[last].ravel()
+    for i in range(n):
+        for k in range(dofs):
+            error[i, k] = 0.0
+            for s in range(count):
+                error[i, k] += h * error_weights[s] * stage_u[s, i, k]
+    return displacement(chain, error), rate, iterations
+
+
+def advance(
+    t_bound: float,
+    h: float,
+    rate: float,
+    records: "Records",
+    method: "Method",
+    order: int,
+    tolerance: float,
+    arm: "Moving",
+) -> tuple[int, int, float, float, int, int]:
+    """Steps from row 0 of the records until they are full or ``t_bound`` (s) is reached.
+
+    A step that leaves the arm at a geometric limit or not finite is taken only as the first of its batch,
+    so that the ones before it are not lost with it. Returns how it ended, the steps taken, the next step's
+    size, the rate of convergence, the rejected steps, and the Newton iterations.
+    """
+    times, states, accelerations, powers = records
+    count = len(method[1])
+    _, n, dofs = accelerations.shape
+    shape = (count, n, dofs)
+    stages = (np.empty(shape), np.empty(shape), np.empty(shape))
+    work, chain = np.empty((6, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    taken, rejected, iterations = 0, 0, 0
+    last_error = tolerance
+    while taken < len(times) - 1:
+        t = times[taken]
+        left = t_bound - t
+        if left <= 0.0:
+            return FINISHED, taken, h, rate, rejected, iterations
+        if h < 16.0 * 2.2e-16 * abs(t) or h < 1e-300:
+            return TOO_SMALL, taken, h, rate, rejected, iterations
+        reaches = h >= 0.99 * left
+        step = left if reaches else min(h, 0.5 * left)
+        stages[2][0] = accelerations[taken]
+        error, rate, took = step_once(
+            t,
+            step,
+            states[taken],
+            rate,
+            method,
+            tolerance,
+            arm,
+            chain,
+            work,
+            stages,
+            states[taken + 1],
+            powers[taken + 1],
+        )
+        iterations += took
+        if not error <= tolerance:
+            rejected += 1
+            shrink = 0.25 if not math.isfinite(error) else SAFETY * (tolerance / error) ** (1.0 / order)
+            h = step * max(MOST_SHRINK, shrink)
+            continue
+        error = max(error, 1e-6 * tolerance)
+        growth = SAFETY * (tolerance / error) ** (0.7 / order) * (last_error / tolerance) ** (0.3 / order)
+        last_error = error
+        h = max(h, step) if reaches and growth > 1.0 else step * min(MOST_GROWTH, max(MOST_SHRINK, growth))
+        states[taken + 1, 2 * n * dofs :] = 0.0
+        bad = clearance_sweep(stages[0][count - 1], arm[1]) <= 0.0 or not np.isfinite(states[taken + 1]).all()
+        if bad and taken > 0:
+            return NO_ROOM, taken, step, rate, rejected, iterations
+        taken += 1
+        times[taken] = t_bound if reaches else t + step
+        accelerations[taken] = stages[2][count - 1]
+        add_work(taken, records, arm, chain, work)
+        if bad:
+            return NO_ROOM, taken, h, rate, rejected, iterations
+    return (FINISHED if times[taken] >= t_bound else GOING_ON), taken, h, rate, rejected, iterations
+
+
+def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, work: np.ndarray) -> None:
+    """The integrals of the powers at the end of step ``row``, by Lobatto's rule on the step's interpolant.
+
+    The stages would do for that in principle; but damping multiplies the stages' own, lower order in
+    stiff coordinates, which the ends of the steps do not have.
+    """
+    times, states, accelerations, powers = records
+    _, n, dofs = accelerations.shape
+    size = n * dofs
+    pieces, segments, disks = arm
+    tension, between = np.empty(pieces.shape[0]), np.empty((2, states.shape[1]))
+    h = times[row] - times[row - 1]
+    middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / math.sqrt(5.0)
+    at = np.array([middle - apart, middle + apart])
+    step = (
+        times[row - 1 : row + 1],
+        states[row - 1 : row + 1],
+        accelerations[row - 1 : row + 1],
+        powers[row - 1 : row + 1],
+    )
+    interpolate(at, step, between)
+    states[row, 2 * size :] = states[row - 1, 2 * size :] + h / 12.0 * (powers[row - 1] + powers[row])
+    for m in range(2):
+        tension_at(at[m], pieces, tension)
+        q, u = between[m, :size].reshape((n, dofs)), between[m, size : 2 * size].reshape((n, dofs))
+        power_in, dissipated = motion_sweep(q, u, work[0], tension, segments, disks, chain)
+        states[row, 2 * size] += 5.0 * h / 12.0 * power_in
+        states[row, 2 * size + 1] += 5.0 * h / 12.0 * dissipated
+
+
+def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") -> float:
+    """Row 0 of the records: a time, a state, its acceleration and its powers.
+
+    Returns the largest acceleration of a disk that comes of the coordinates' own, m/s^2.
+    """
+    times, states, accelerations, powers = records
+    pieces, segments, disks = arm
+    _, n, dofs = accelerations.shape
+    tension, chain = np.empty(pieces.shape[0]), np.empty((n, CHAIN_COLUMNS))
+    tension_at(t, pieces, tension)
+    times[0], states[0] = t, y
+    q, u = states[0, : n * dofs].reshape((n, dofs)), states[0, n * dofs : 2 * n * dofs].reshape((n, dofs))
+    powers[0] = acceleration(q, u, tension, segments, disks, chain, accelerations[0])
+    return displacement(chain, accelerations[0])
+
+
+def interpolate(at: np.ndarray, records: "Records", found: np.ndarray) -> None:
+    """States at the increasing times ``at`` into ``found``, (len(at), size).
+
+    Quintic Hermite for coordinates, from their rates and accelerations at both ends of a step; its
+    derivative for rates; cubic for the two integrals of powers.
+    """
+    times, states, accelerations, powers = records
+    _, n, dofs = accelerations.shape
+    size = n * dofs
+    row = 0
+    for m in range(len(at)):
+        while row < len(times) - 2 and at[m] > times[row + 1]:
+            row += 1
+        h = times[row + 1] - times[row]
+        s = (at[m] - times[row]) / h
+        s2, s3 = s * s, s * s * s
+        rest = 1.0 - s
+        end = s3 * (10.0 - 15.0 * s + 6.0 * s2)
+        start_rate, end_rate = s * rest * rest * rest * (1.0 + 3.0 * s), s3 * rest * (3.0 * s - 4.0)
+        start_push, end_push = 0.5 * s2 * rest * rest * rest, 0.5 * s3 * rest * rest
+        end_slope = 30.0 * s2 * rest * rest
+        start_rate_slope = 1.0 - 18.0 * s2 + 32.0 * s3 - 15.0 * s2 * s2
+        end_rate_slope = -12.0 * s2 + 28.0 * s3 - 15.0 * s2 * s2
+        start_push_slope = s - 4.5 * s2 + 6.0 * s3 - 2.5 * s2 * s2
+        end_push_slope = 1.5 * s2 - 4.0 * s3 + 2.5 * s2 * s2
+        for j in range(size):
+            i, k = j // dofs, j % dofs
+            q0, q1 = states[row, j], states[row + 1, j]
+            u0, u1 = states[row, size + j], states[row + 1, size + j]
+            w0, w1 = accelerations[row, i, k], accelerations[row + 1, i, k]
+            found[m, j] = (
+                q0
+                + end * (q1 - q0)
+                + h * (start_rate * u0 + end_rate * u1 + h * (start_push * w0 + end_push * w1))
+            )
+            found[m, size + j] = (
+                end_slope * (q1 - q0) / h
+                + start_rate_slope * u0
+                + end_rate_slope * u1
+                + h * (start_push_slope * w0 + end_push_slope * w1)
+            )
+        for part in range(2):
+            y0, y1 = states[row, 2 * size + part], states[row + 1, 2 * size + part]
+            found[m, 2 * size + part] = (
+                y0
+                + s2 * (3.0 - 2.0 * s) * (y1 - y0)
+                + h * s * rest * (rest * powers[row, part] - s * powers[row + 1, part])
+            )
