@@ -125,7 +125,9 @@ def _root_attributes(run: Run) -> dict[str, Any]:
         ),
     }
     if isinstance(run.scenario.study, MotionStudy):
-        attributes |= asdict(run.scenario.solver)
+        attributes |= asdict(run.solver or run.scenario.solver)
+    if run.tip_error is not None:
+        attributes["tip_error"] = run.tip_error
     if run.static_gap is not None:
         attributes["static_gap"] = run.static_gap
     return attributes

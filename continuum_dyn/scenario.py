@@ -17,6 +17,7 @@ from continuum_dyn.effects import EFFECTS
 from continuum_dyn.profiles import PROFILES, Constant, Profile, Ramp, Sine, Step, Table
 from continuum_dyn.study import (
     STUDIES,
+    Accuracy,
     EquilibriumStudy,
     MotionStudy,
     RampStudy,
@@ -117,6 +118,7 @@ class ScenarioFile(BaseModel):
     loads: list[DiskLoad] = []
     study: StudyTable
     solver: Solver = Solver()
+    accuracy: Accuracy | None = None
 
 
 _KEYS: dict[str, Any] = {
@@ -126,6 +128,7 @@ _KEYS: dict[str, Any] = {
     "cables": CableTable,
     "loads": DiskLoad,
     "solver": Solver,
+    "accuracy": Accuracy,
     **{f"study.{name}": study for name, study in STUDIES.items()},
     **{f"effects.{name}": effect for name, effect in EFFECTS.items()},
     **{f"cables.tension.{name}": profile for name, profile in PROFILES.items()},
@@ -147,6 +150,7 @@ def load_scenario(path: str | Path) -> Scenario:
         raise InputError(f"{path}: not a TOML file: {error}.") from error
     try:
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
+        _check_tolerances(content)
         return _build(file, path, text)
     except ValidationError as error:
         raise InputError(_explain(path, error)) from error
@@ -154,6 +158,15 @@ def load_scenario(path: str | Path) -> Scenario:
         raise InputError(f"{path}: {error}") from error
     except RecursionError as error:
         raise InputError(f"{path}: nested too deeply to be a scenario.") from error
+
+
+def _check_tolerances(content: dict[str, Any]) -> None:
+    given = [name for name in ("rtol", "atol") if name in content.get("solver", {})]
+    if given and "accuracy" in content:
+        raise InputError(
+            f"[solver] {' and '.join(given)} beside [accuracy]: the accuracy decides the tolerances. "
+            "Give one or the other."
+        )
 
 
 def _read(path: Path) -> str:
@@ -188,6 +201,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         tension=tension,
         study=file.study,
         solver=file.solver,
+        accuracy=file.accuracy,
         title=file.title or path.stem,
         text=text,
     )

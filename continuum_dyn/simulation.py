@@ -6,15 +6,17 @@ Every run ends in a named outcome and keeps what it computed.
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
+from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Budget, Monitor
-from continuum_dyn.profiles import spans
+from continuum_dyn.profiles import Span, spans
 from continuum_dyn.settling import settled, tip_gap
-from continuum_dyn.study import MotionStudy, RampStudy, Scenario, StepResponseStudy
+from continuum_dyn.study import MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
 from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.outcome import Outcome
@@ -36,6 +38,8 @@ class Run:
     static_path: list[Equilibrium] = field(default_factory=list)
     trajectory: Trajectory | None = None
     static_gap: float | None = None
+    solver: Solver | None = None
+    tip_error: float | None = None
     solve_time: float = 0.0
 
     @property
@@ -106,21 +110,59 @@ def _motion(
         progress=None if progress is None else lambda t: progress(t / study.duration),
         budget=budget,
     )
-    samples = np.linspace(0.0, study.duration, study.samples)
-    y = dynamics.state(start.coordinates)
-    trajectory = integrate(dynamics, stretches, samples, y, scenario.solver, monitor)
+    moved = _moved(scenario, study, dynamics, stretches, start, monitor)
     end = statics.solve(stretches[-1].tension(np.array([study.duration]))[0], start.coordinates)
-    path = statics.ramp(trajectory.tension, start.coordinates) if study.static_path else []
+    path = statics.ramp(moved.trajectory.tension, start.coordinates) if study.static_path else []
     run = Run(
         scenario,
         monitor.outcome or Outcome.COMPLETED,
         monitor.message,
         [start, end],
         path,
-        trajectory,
+        moved.trajectory,
+        solver=moved.solver,
+        tip_error=moved.tip_error,
         solve_time=time.perf_counter() - started,
     )
     return run if monitor.outcome else _compared(run, study, end)
+
+
+class _Moved(NamedTuple):
+    trajectory: Trajectory
+    solver: Solver
+    tip_error: float | None
+
+
+def _moved(
+    scenario: Scenario,
+    study: MotionStudy,
+    dynamics: Dynamics,
+    stretches: list[Span],
+    start: Equilibrium,
+    monitor: Monitor,
+) -> _Moved:
+    """The motion with the scenario's tolerances, or with those that its accuracy takes."""
+    samples = np.linspace(0.0, study.duration, study.samples)
+    y = dynamics.state(start.coordinates)
+    last: list[Trajectory] = []
+
+    def run(solver: Solver) -> Trajectory | None:
+        last.append(integrate(dynamics, stretches, samples, y, solver, monitor))
+        return None if monitor.outcome else last[-1]
+
+    if scenario.accuracy is None:
+        run(scenario.solver)
+        return _Moved(last[-1], scenario.solver, None)
+    asked = scenario.accuracy.tip
+    found = to_accuracy(run, scenario.solver, asked, scenario.scene.arm.total_length)
+    if found is None:
+        return _Moved(last[-1], scenario.solver, None)
+    if not found.reached:
+        monitor.message = (
+            f"accuracy of {asked:g} m not reached: {found.estimate:.2g} m at rtol {found.solver.rtol:.1g}, "
+            f"after {len(found.trials)} trials"
+        )
+    return _Moved(found.trajectory, found.solver, found.estimate)
 
 
 def _compared(run: Run, study: MotionStudy, end: Equilibrium) -> Run:

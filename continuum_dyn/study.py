@@ -82,24 +82,38 @@ class Solver:
     atol: Positive = 1e-9
 
 
+@dataclass(frozen=True, config=STRICT)
+class Accuracy:
+    """Largest tip error (m) over the samples, against the exact motion of the same segments.
+
+    The program then chooses the tolerances, and checks.
+    """
+
+    tip: Positive
+
+
 @dataclasses.dataclass(frozen=True)
 class Scenario:
     """A scene, the tension of each of its cables, and what is asked of it.
 
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
-    ``text`` is the file that it was read from. Raises ``InputError`` where these do not fit.
+    ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
+    program's to choose. Raises ``InputError`` where these do not fit.
     """
 
     scene: Scene
     tension: tuple[Profile, ...] | tuple[tuple[float, ...], ...]
     study: Study
     solver: Solver = dataclasses.field(default_factory=Solver)
+    accuracy: Accuracy | None = None
     title: str = ""
     text: str = ""
 
     def __post_init__(self) -> None:
         if len(self.tension) != self.scene.cables:
             raise InputError(f"{len(self.tension)} tensions given for {self.scene.cables} cables.")
+        if self.accuracy is not None and not isinstance(self.study, MotionStudy):
+            raise InputError(f'[accuracy] belongs to a study of motion; this is "{self.study.kind}".')
         if isinstance(self.study, MotionStudy):
             self._check_motion(self.study)
         elif isinstance(self.study, RampStudy):

@@ -99,6 +99,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
     }
     if result.trajectory is not None:
         record["static_gap"] = result.static_gap
+        record["tip_error"] = result.tip_error
         record["ledger_gap"] = (
             float(abs(result.trajectory.ledger_gap).max()) if result.trajectory.time.size else None
         )
@@ -157,6 +158,9 @@ def _show(report: dict[str, Any]) -> None:
     if result.trajectory is not None:
         counters = ", ".join(f"{count} {name}" for name, count in result.trajectory.counters.items())
         table.add_row("solver", f"{result.scenario.solver.method}: {counters}")
+    if result.tip_error is not None and result.solver is not None:
+        checked = f"tip within {_length(result.tip_error)}, checked; rtol {result.solver.rtol:.1e}"
+        table.add_row("accuracy", checked)
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     table.add_row("log", f"{report['log']}  (play it: continuum-dyn play {report['log']})")
     console = Console(highlight=False)
