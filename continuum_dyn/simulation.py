@@ -13,7 +13,7 @@ import numpy as np
 from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
-from continuum_dyn.integrators import Budget, Monitor
+from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.profiles import Span, spans
 from continuum_dyn.settling import settled, tip_gap
 from continuum_dyn.study import MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
@@ -100,7 +100,10 @@ def _motion(
     statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
     stretches = spans(scenario.profiles, study.duration)
     statics.warm_up()
-    warm_up(dynamics, scenario.solver, stretches[0])
+    solver = scenario.solver
+    if solver.method == "auto":
+        solver = replace(solver, method=choose(scenario.scene).method)
+    warm_up(dynamics, solver, stretches[0])
     started = time.perf_counter()
     start = statics.solve(scenario.initial_tension)
     if not start.found:
@@ -110,7 +113,7 @@ def _motion(
         progress=None if progress is None else lambda t: progress(t / study.duration),
         budget=budget,
     )
-    moved = _moved(scenario, study, dynamics, stretches, start, monitor)
+    moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
     end = statics.solve(stretches[-1].tension(np.array([study.duration]))[0], start.coordinates)
     path = statics.ramp(moved.trajectory.tension, start.coordinates) if study.static_path else []
     run = Run(
@@ -136,27 +139,28 @@ class _Moved(NamedTuple):
 def _moved(
     scenario: Scenario,
     study: MotionStudy,
+    solver: Solver,
     dynamics: Dynamics,
     stretches: list[Span],
     start: Equilibrium,
     monitor: Monitor,
 ) -> _Moved:
-    """The motion with the scenario's tolerances, or with those that its accuracy takes."""
+    """The motion with the solver's tolerances, or with those that the scenario's accuracy takes."""
     samples = np.linspace(0.0, study.duration, study.samples)
     y = dynamics.state(start.coordinates)
     last: list[Trajectory] = []
 
-    def run(solver: Solver) -> Trajectory | None:
-        last.append(integrate(dynamics, stretches, samples, y, solver, monitor))
+    def run(settings: Solver) -> Trajectory | None:
+        last.append(integrate(dynamics, stretches, samples, y, settings, monitor))
         return None if monitor.outcome else last[-1]
 
     if scenario.accuracy is None:
-        run(scenario.solver)
-        return _Moved(last[-1], scenario.solver, None)
+        run(solver)
+        return _Moved(last[-1], solver, None)
     asked = scenario.accuracy.tip
-    found = to_accuracy(run, scenario.solver, asked, scenario.scene.arm.total_length)
+    found = to_accuracy(run, solver, asked, scenario.scene.arm.total_length)
     if found is None:
-        return _Moved(last[-1], scenario.solver, None)
+        return _Moved(last[-1], solver, None)
     if not found.reached:
         monitor.message = (
             f"accuracy of {asked:g} m not reached: {found.estimate:.2g} m at rtol {found.solver.rtol:.1g}, "

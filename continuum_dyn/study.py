@@ -64,20 +64,21 @@ STUDIES: dict[str, type[Study]] = {
     "step_response": StepResponseStudy,
 }
 
-Method = Literal["chain", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+Method = Literal["auto", "chain", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 
 
 @dataclass(frozen=True, config=STRICT)
 class Solver:
     """Integrator and its local error tolerances.
 
-    "chain" is the arm's own implicit method: a step's error may displace no disk by more than
-    ``rtol`` + ``atol`` times the arm's length. For SciPy's methods ``rtol`` is relative and ``atol`` in rad
-    for bend angles; elongations use it times the segment's rest length, rates the same times the arm's
-    natural frequency, energies times its bending stiffness over that length.
+    "auto" takes "chain" for a scene with damping and "DOP853" for one without. "chain" is the arm's own
+    implicit method: a step's error may displace no disk by more than ``rtol`` + ``atol`` times the arm's
+    length. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend angles; elongations use
+    it times the segment's rest length, rates the same times the arm's natural frequency, energies times
+    its bending stiffness over that length.
     """
 
-    method: Method = "chain"
+    method: Method = "auto"
     rtol: Annotated[float, Field(ge=1e-14, lt=1)] = 1e-7
     atol: Positive = 1e-9
 

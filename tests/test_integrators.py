@@ -8,9 +8,10 @@ import pytest
 from conftest import SCENARIOS, motion, moving, rone2012
 from scipy.integrate import solve_ivp
 
-from continuum_dyn import Scenario, Trajectory, load_scenario
+from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators import ChainSolver
+from continuum_dyn.effects import MaterialDamping
+from continuum_dyn.integrators import ChainSolver, choose
 from continuum_dyn.integrators.tableau import ESDIRK5, Tableau
 from continuum_dyn.profiles import Sine, Span, Step, spans
 from continuum_dyn.study import Method, MotionStudy, Solver
@@ -185,3 +186,14 @@ def test_jump_at_the_start_is_resolved_though_the_axial_modes_are_fast(step_resp
     assert chain.elongation is not None
     assert radau.elongation is not None
     np.testing.assert_allclose(chain.elongation, radau.elongation, atol=2e-3 * np.ptp(radau.elongation))
+
+
+def test_auto_takes_the_chain_where_something_is_damped_and_keeps_energy_where_nothing_is() -> None:
+    damped, free = moving(rone2012()), moving(rone2012(), damping=False)
+    undamped = Scene(free.arm, (*free.effects, MaterialDamping(retardation_time=0.0)))
+    assert [choose(scene).method for scene in (damped, free, undamped)] == ["chain", "DOP853", "DOP853"]
+    run = simulate(Scenario(free, (Step(before=2.0, after=0.0),), MotionStudy(0.01, samples=11)))
+    assert run.solver is not None
+    assert run.trajectory is not None
+    assert run.solver.method == "DOP853"
+    assert np.abs(run.trajectory.ledger_gap).max() < 1e-6 * run.trajectory.ledger["kinetic_energy"].max()

@@ -172,4 +172,4 @@ def test_missing_file_names_the_nearest() -> None:
 
 
 def test_solver_table_knows_every_integrator() -> None:
-    assert set(METHODS) == set(Method.__args__)
+    assert {"auto", *METHODS} == set(Method.__args__)

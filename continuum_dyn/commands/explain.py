@@ -37,7 +37,17 @@ def explain(
     for effect in scene.effects:
         line = f"  {effect.name:<17} on each {effect.place:<8} {effect.source}"
         typer.echo(fill(line, 79, subsequent_indent=" " * 36))
+    _print_method(scenario)
     _print_equations(scene, latex)
+
+
+def _print_method(scenario: Any) -> None:
+    from continuum_dyn.integrators import choose
+    from continuum_dyn.study import MotionStudy
+
+    if isinstance(scenario.study, MotionStudy) and scenario.solver.method == "auto":
+        choice = choose(scenario.scene)
+        typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 
 def _print_equations(scene: Any, latex: bool) -> None:

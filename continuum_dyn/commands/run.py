@@ -98,6 +98,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
         "recording": str(recording),
     }
     if result.trajectory is not None:
+        record["method"] = result.solver.method if result.solver else None
         record["static_gap"] = result.static_gap
         record["tip_error"] = result.tip_error
         record["ledger_gap"] = (
@@ -156,11 +157,7 @@ def _show(report: dict[str, Any]) -> None:
     if result.static_gap is not None:
         table.add_row("gap to static", f"{_length(result.static_gap)} from the final equilibrium")
     if result.trajectory is not None:
-        counters = ", ".join(f"{count} {name}" for name, count in result.trajectory.counters.items())
-        table.add_row("solver", f"{result.scenario.solver.method}: {counters}")
-    if result.tip_error is not None and result.solver is not None:
-        checked = f"tip within {_length(result.tip_error)}, checked; rtol {result.solver.rtol:.1e}"
-        table.add_row("accuracy", checked)
+        _add_motion(table, result)
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     table.add_row("log", f"{report['log']}  (play it: continuum-dyn play {report['log']})")
     console = Console(highlight=False)
@@ -169,6 +166,25 @@ def _show(report: dict[str, Any]) -> None:
     if result.trajectory is None and len(points) > 1:
         console.print(_ramp_table(result, points))
     console.print()
+
+
+def _add_motion(table: Any, result: "Run") -> None:
+    """How the motion was computed, how exact it is, and whether its energy balances."""
+    trajectory, solver = result.trajectory, result.solver
+    assert trajectory is not None
+    assert solver is not None
+    counters = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in trajectory.counters.items())
+    table.add_row("solver", f"{solver.method}: {counters}")
+    if result.tip_error is not None:
+        table.add_row("accuracy", f"tip within {_length(result.tip_error)}, checked; rtol {solver.rtol:.1e}")
+    energy = max(
+        float(abs(column).max(initial=0.0))
+        for name, column in trajectory.ledger.items()
+        if "power" not in name
+    )
+    if energy > 0.0:
+        gap = float(abs(trajectory.ledger_gap).max())
+        table.add_row("power ledger", f"closes to {gap / energy:.1g} of the largest energy in it")
 
 
 def _ramp_table(result: "Run", points: list[Any]) -> Any:

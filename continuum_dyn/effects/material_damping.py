@@ -20,7 +20,7 @@ class MaterialDamping:
     account: ClassVar[Account] = "dissipated_power"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
-    arm_quantities: ClassVar[tuple[str, ...]] = ("youngs_modulus", "second_moment", "area")
+    arm_quantities: ClassVar[tuple[str, ...]] = ("youngs_modulus", "second_moment")
     quantities: ClassVar[tuple[str, ...]] = ("retardation_time",)
     source: ClassVar[str] = "Linn, Lang and Tuganov 2013, Kelvin-Voigt rods"
 

@@ -3,6 +3,7 @@
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 
 from continuum_dyn.integrators.chain_solver import ChainSolver
+from continuum_dyn.integrators.choice import Choice, choose
 from continuum_dyn.integrators.guard import Budget, Guard, Monitor, interruptible
 
 IMPLICIT = ("Radau", "BDF", "LSODA")
@@ -16,4 +17,14 @@ METHODS: dict[str, type[OdeSolver]] = {
     }.items()
 }
 
-__all__ = ["IMPLICIT", "METHODS", "Budget", "ChainSolver", "Guard", "Monitor", "interruptible"]
+__all__ = [
+    "IMPLICIT",
+    "METHODS",
+    "Budget",
+    "ChainSolver",
+    "Choice",
+    "Guard",
+    "Monitor",
+    "choose",
+    "interruptible",
+]
