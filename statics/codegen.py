@@ -7,6 +7,7 @@ warm start finds its kernel by a hash and imports neither sympy nor the derivati
 
 import hashlib
 import importlib.util
+import inspect
 import os
 import platform
 import stat
@@ -22,6 +23,7 @@ from typing import Any
 
 from platformdirs import user_cache_path
 
+from statics.effects import Effect
 from statics.errors import KernelCacheError
 from statics.scene import Scene
 
@@ -70,10 +72,17 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
     structure = (recipe.kind, scene.coordinates, scene.cables, [effect.name for effect in scene.effects])
-    effects = (sys.modules[type(effect).__module__].__file__ for effect in scene.effects)
-    files = (*recipe.sources, *(Path(file) for file in effects if file))
-    sources = [_digest(file, file.stat().st_mtime_ns) for file in files]
+    sources = [_digest(file, file.stat().st_mtime_ns) for file in recipe.sources]
+    sources += [_effect_digest(effect) for effect in scene.effects]
     return hashlib.sha256(repr((structure, _versions(), sources)).encode()).hexdigest()[:24]
+
+
+def _effect_digest(effect: Effect) -> str:
+    """That of the effect's file, or of its class where that was typed into a session."""
+    file = getattr(sys.modules[type(effect).__module__], "__file__", None)
+    if file is None:
+        return inspect.getsource(type(effect))
+    return _digest(Path(file), Path(file).stat().st_mtime_ns)
 
 
 @cache

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from continuum_dyn.study import Scenario
 
 MAX_ROWS = 20
+"""Most rows of a ramp that are printed."""
+BAR_INTERVAL = 0.1
+"""Shortest time between two updates of the progress bar, s."""
 
 
 def run(
@@ -116,7 +119,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
 
 @contextmanager
 def _progress(title: str, quiet: bool) -> Iterator[Any]:
-    """A progress bar on work that takes longer than a second; none in pipes."""
+    """A progress bar on a terminal; it only pulses while kernels are compiled, which happens once."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -124,16 +127,15 @@ def _progress(title: str, quiet: bool) -> Iterator[Any]:
     if quiet or not console.is_terminal:
         yield None
         return
-    started = time.monotonic()
-    with Progress(console=console, transient=True, auto_refresh=False) as bar:
-        task = bar.add_task(title, total=1.0, visible=False)
-        latest = [started + 0.9]
+    latest = time.monotonic()
+    with Progress(console=console, transient=True) as bar:
+        task = bar.add_task(title, total=None)
 
         def update(fraction: float) -> None:
-            now = time.monotonic()
-            if now - latest[0] > 0.1:
-                latest[0] = now
-                bar.update(task, completed=fraction, visible=True, refresh=True)
+            nonlocal latest
+            if time.monotonic() - latest > BAR_INTERVAL:
+                latest = time.monotonic()
+                bar.update(task, total=1.0, completed=fraction)
 
         yield update
 
