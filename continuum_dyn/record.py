@@ -16,6 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from continuum_dyn.cost import Cost
 from continuum_dyn.simulation import Run
 from continuum_dyn.study import MotionStudy, Scenario
 from continuum_dyn.trajectory import Trajectory
@@ -91,6 +92,36 @@ def read_log(path: Path) -> Log:
         raise LogError(f"{path}: no such file.") from error
     except (OSError, KeyError) as error:
         raise LogError(f"{path}: not a log of continuum-dyn: {error}") from error
+
+
+def write_cost(cost: Cost, path: Path) -> None:
+    """Write what accuracy costs as the group ``cost`` of a file of its own. Raises ``LogError``."""
+    part = path.with_name(path.name + ".part")
+    prices = cost.prices
+    columns = {
+        "rtol": np.array([p.rtol for p in prices]),
+        "tip_error": np.array([p.error for p in prices]),
+        "solve_time": np.array([p.seconds for p in prices]),
+        "steps": np.array([p.steps for p in prices]),
+        "segment_evaluations": np.array([p.segment_evaluations for p in prices]),
+    }
+    try:
+        with h5py.File(part, "w", libver=("v110", "v110")) as file:
+            file.attrs.update({"title": cost.scenario.title, "scenario": cost.scenario.text})
+            group = file.create_group("cost")
+            group.attrs["reference_gap"] = cost.reference_gap
+            _write_scale(group, "price", np.arange(1, len(prices) + 1))
+            _write_dataset(
+                group, "method", np.array([p.method for p in prices], h5py.string_dtype()), ["price"]
+            )
+            for name, values in columns.items():
+                _write_dataset(group, name, values, ["price"])
+        part.replace(path)
+    except OSError as error:
+        raise LogError(f"cannot write {path}: {error.strerror or error}.") from error
+    finally:
+        with suppress(OSError):
+            part.unlink()
 
 
 def _write(file: h5py.File, run: Run) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from continuum_dyn import load_scenario, simulate
+from continuum_dyn.cost import measure
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.views import plots
 
@@ -11,13 +12,18 @@ HERE = Path(__file__).parent
 
 
 def main() -> None:
-    """Run the step response and draw it."""
+    """Run the step response, and draw it and what its accuracy costs."""
+    scenario = load_scenario(HERE.parent / "scenarios" / "step_response.toml")
     with TemporaryDirectory() as folder:
         log = Path(folder) / "step_response.h5"
-        write_log(simulate(load_scenario(HERE.parent / "scenarios" / "step_response.toml")), log)
-        picture = HERE / "step_response.png"
-        plots.step_response(read_log(log)).savefig(picture, dpi=130)
-        print(picture)
+        write_log(simulate(scenario), log)
+        figures = {
+            "step_response.png": plots.step_response(read_log(log)),
+            "cost.png": plots.cost(measure(scenario)),
+        }
+    for name, figure in figures.items():
+        figure.savefig(HERE / name, dpi=130)
+        print(HERE / name)
 
 
 if __name__ == "__main__":

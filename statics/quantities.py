@@ -77,6 +77,13 @@ gravity_energy       | -     | J      | potential energy of the masses, zero at 
 input_power          | -     | W      | power of the cables and of the loads on disks
 dissipated_power     | -     | W      | power lost to damping
 input_work           | -     | J      | time integral of the input power since the start
+price                | -     | 1      | number of a way to compute a motion
+method               | -     | 1      | name of an integrator
+rtol                 | -     | 1      | relative tolerance of an integrator
+tip_error            | -     | m      | largest distance of the tip from the exact motion, over the samples
+solve_time           | -     | s      | time that the solving takes
+steps                | -     | 1      | number of accepted integration steps
+segment_evaluations  | -     | 1      | work: one segment's part of an evaluation of the equations
 dissipated_energy    | -     | J      | time integral of the dissipated power since the start
 """
 

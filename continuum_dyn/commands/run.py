@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from statics.errors import InputError, LogError
+from continuum_dyn.commands.show import length, make_folder
+from statics.errors import InputError
 
 if TYPE_CHECKING:
     from continuum_dyn.simulation import Run
@@ -36,7 +37,7 @@ def run(
     2 bad input, 130 interrupted.
     """
     scenarios = _load(files)
-    _make_folder(out)
+    make_folder(out)
     statuses = []
     for path, scenario in scenarios:
         report = _answer(path, scenario, out, quiet=as_json)
@@ -58,18 +59,6 @@ def _load(files: list[Path]) -> "list[tuple[Path, Scenario]]":
         if count > 1:
             raise InputError(f"{count} files are named '{stem}'; their logs would overwrite each other.")
     return [(path, load_scenario(path)) for path in files]
-
-
-def _make_folder(folder: Path) -> None:
-    probe = folder / ".writable"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise LogError(
-            f"cannot write to the folder {folder}: {error.strerror}. Name another with --out."
-        ) from error
 
 
 def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[str, Any]:
@@ -157,7 +146,7 @@ def _show(report: dict[str, Any]) -> None:
     if result.tip is not None:
         table.add_row("tip", _pose(result.tip))
     if result.static_gap is not None:
-        table.add_row("gap to static", f"{_length(result.static_gap)} from the final equilibrium")
+        table.add_row("gap to static", f"{length(result.static_gap)} from the final equilibrium")
     if result.trajectory is not None:
         _add_motion(table, result)
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
@@ -178,7 +167,7 @@ def _add_motion(table: Any, result: "Run") -> None:
     counters = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in trajectory.counters.items())
     table.add_row("solver", f"{solver.method}: {counters}")
     if result.tip_error is not None:
-        table.add_row("accuracy", f"tip within {_length(result.tip_error)}, checked; rtol {solver.rtol:.1e}")
+        table.add_row("accuracy", f"tip within {length(result.tip_error)}, checked; rtol {solver.rtol:.1e}")
     energy = max(
         float(abs(column).max(initial=0.0))
         for name, column in trajectory.ledger.items()
@@ -209,11 +198,3 @@ def _ramp_table(result: "Run", points: list[Any]) -> Any:
 
 def _pose(tip: tuple[float, float, float]) -> str:
     return f"x {tip[0] * 1e3:.4f} mm, y {tip[1] * 1e3:.4f} mm, theta {tip[2]:.5f} rad"
-
-
-def _length(value: float) -> str:
-    """A length in the unit that reads best."""
-    for unit, size in (("m", 1.0), ("mm", 1e-3), ("um", 1e-6)):
-        if value >= size:
-            return f"{value / size:.3g} {unit}"
-    return f"{value / 1e-9:.3g} nm"

@@ -5,11 +5,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from continuum_dyn.cost import Cost
 from continuum_dyn.record import Log
 from continuum_dyn.views.backbone import backbone
 from statics.quantities import QUANTITIES
 
 ARC_POINTS = 12
+STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+")]
+"""Lines and markers that can be told apart in black and white."""
 
 
 def step_response(log: Log) -> Figure:
@@ -22,6 +25,32 @@ def step_response(log: Log) -> Figure:
     _draw_tip(axes["tip"], log)
     _draw_energies(axes["energy"], log)
     figure.suptitle(log.title)
+    return figure
+
+
+def cost(measured: Cost) -> Figure:
+    """Tip error against time, and against machine-independent work, for every method."""
+    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
+    by_time, by_work = figure.subplots(1, 2, sharey=True)
+    methods = list(dict.fromkeys(price.method for price in measured.prices))
+    for method, (line, marker) in zip(methods, STYLES, strict=False):
+        prices = [price for price in measured.prices if price.method == method]
+        errors = [price.error for price in prices]
+        look = {
+            "ls": line,
+            "marker": marker,
+            "ms": 5,
+            "lw": 2.2 if method == "chain" else 1.2,
+            "label": method,
+        }
+        by_time.loglog([1e3 * price.seconds for price in prices], errors, **look)
+        by_work.loglog([price.segment_evaluations for price in prices], errors, **look)
+    by_time.set(xlabel="time (ms)", ylabel="largest tip error (m)")
+    by_work.set(xlabel="segment evaluations")
+    by_work.legend()
+    for axes in (by_time, by_work):
+        axes.grid(visible=True, which="major", lw=0.4, color="0.8")
+    figure.suptitle(f"{measured.scenario.title}: what accuracy costs")
     return figure
 
 

@@ -1,0 +1,345 @@
+"""The exact planar rod between the disks: an independent judge of the constant-curvature model.
+
+Each span is an elastica (Love 1944, sec. 262) between rigid, point-like disks, with s from 0 to L0
+along its undeformed length and the internal force F and moment M of all that lies beyond::
+
+    dtheta/ds = k0 + M / EJ      dr/ds = (1 + F.t / EA) t      M(s) = M(0) - (r(s) - r(0)) x F
+
+with t = (cos theta, sin theta); F is constant over a span, and F.t / EA is left out in a scene without
+extension. There is no shear. Curvature is measured per *undeformed* length, so the energy of a span is
+the integral of EJ (theta' - k0)^2 / 2 + EA eps^2 / 2 over L0: with constant theta' = phi / L0 and
+eps = e / L0 it is that of the program's laws, moment (EJ / L0)(phi - k0 L0) and force (EA / L0) e. The
+constant-curvature arm is this rod with fewer shapes to choose from. Per deformed length, the bending
+law would differ from the program's by the strain.
+
+Solved by multiple shooting on the internal loads, each piece of the core in the frame of the node that
+it starts from; what has to vanish is the unbalance of every node. Nodes are the disks and, where the
+loads are large, points between them: a piece that carries less than pi^2 EJ / length^2 is stable while
+its ends are held (the second variation of its energy is the integral of EJ eta'^2 + F.t eta^2), so the
+arm is stable where the compliance of its nodes has no negative eigenvalue. Nothing here knows the
+segment, the chain or the kernels.
+"""
+
+from dataclasses import dataclass, replace
+from math import ceil, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from statics.effects import Bending, Cables, DiskLoads, Extension, Gravity
+from statics.errors import ContinuumError, InputError
+from statics.scene import Scene
+
+KNOWN_EFFECTS = (Bending.name, Cables.name, Extension.name, Gravity.name, DiskLoads.name)
+
+MAX_FORCE = (pi / 2) ** 2  # on a piece, in its EJ / length^2: a margin of 4 for what the strain adds
+MAX_TURN = 1.0  # of a node in one step of the loads, rad: keeps to the branch that starts unloaded
+MAX_BEND = 4.0  # of a piece in one Newton step, rad: beyond it the step is hopeless
+SMALLEST_LOAD_STEP = 1e-5
+MET = 0.01  # of the disk spacing: holes that near pull in no certain direction
+NEGATIVE = -1e-9  # of the largest eigenvalue: an inextensible core has zeros, give or take rounding
+MAX_ITERATIONS = 12
+STEP_TOLERANCE = 1e-10  # Newton is quadratic here: what the last step leaves is rounding
+NUDGE = 1e-30  # of the complex step: f(x + i NUDGE) = f(x) + i NUDGE f'(x), without cancellation
+
+
+class RodError(ContinuumError):
+    """No stable equilibrium of the exact rod was found under the full loads."""
+
+
+@dataclass(frozen=True)
+class RodShape:
+    """An exact rod in stable equilibrium: poses of its disks, shape (disks,), m and rad.
+
+    ``residual`` is the largest unbalanced force (N) or moment (N m) on a disk or a node.
+    """
+
+    disk_x: np.ndarray
+    disk_y: np.ndarray
+    disk_theta: np.ndarray
+    residual: float
+
+    @property
+    def tip(self) -> tuple[float, float, float]:
+        """x, y (m) and theta (rad) of the last disk."""
+        return float(self.disk_x[-1]), float(self.disk_y[-1]), float(self.disk_theta[-1])
+
+
+class _Cable(NamedTuple):
+    name: str
+    hole_offset: float
+    anchor: int
+    tension: float
+
+
+@dataclass(frozen=True)
+class _Rod:
+    """A loaded rod in the units of its pieces: their length, force EJ / length^2, moment EJ / length."""
+
+    length: float  # of a piece, m
+    force: float  # the unit, N
+    parts: int  # pieces from disk to disk
+    rest_bend: float  # k0 length, rad
+    softness: float  # the unit of force over EA; 0 if the core cannot extend
+    dead_load: np.ndarray  # force and moment on each disk, shape (disks, 3)
+    cables: tuple[_Cable, ...]
+
+    def under(self, part: float) -> "_Rod":
+        """The same rod under that part of its loads."""
+        cables = tuple(cable._replace(tension=part * cable.tension) for cable in self.cables)
+        return replace(self, dead_load=part * self.dead_load, cables=cables)
+
+
+def exact_rod(scene: Scene, tension: object = None) -> RodShape:
+    """The exact rod of this scene at rest under these tensions, shape (cables,), N.
+
+    A cantilever from the origin along +x, followed from no load to the full loads as long as it is
+    stable. Effects that exist in motion only play no part. Raises ``InputError`` for tensions that do
+    not fit and for effects that the rod does not know, ``RodError`` where it buckles, snaps or comes to
+    the end of its geometry before the full loads are on.
+    """
+    values = scene.check_tension(tension)
+    _check(scene.at_rest)
+    rod = _rod(scene, values)
+    loads = _follow_loads(rod)
+    ends = _piece_ends(rod, loads)
+    pose = _node_poses(ends)[rod.parts :: rod.parts]
+    unbalanced = _unbalance(rod, loads, ends) * (rod.force, rod.force, rod.force * rod.length)
+    return RodShape(
+        disk_x=pose[:, 0] * rod.length,
+        disk_y=pose[:, 1] * rod.length,
+        disk_theta=pose[:, 2],
+        residual=float(np.abs(unbalanced).max()),
+    )
+
+
+def _check(scene: Scene) -> None:
+    unknown = [effect.name for effect in scene.effects if effect.name not in KNOWN_EFFECTS]
+    if unknown:
+        raise InputError(
+            f"the exact rod does not know: {', '.join(unknown)}. Known: {', '.join(KNOWN_EFFECTS)}."
+        )
+    if not scene.has(Bending.name):
+        raise InputError("the exact rod needs the effect 'bending', which the scene does not have.")
+
+
+def _rod(scene: Scene, tension: np.ndarray) -> _Rod:
+    """The scene's numbers, with spans cut so that no piece can carry more than ``MAX_FORCE``."""
+    arm, dead_load = scene.arm, _dead_load(scene)
+    bending_stiffness = _given(arm.youngs_modulus) * _given(arm.second_moment)
+    axial_stiffness = _given(arm.youngs_modulus) * _given(arm.area) if scene.has(Extension.name) else np.inf
+    largest_force = np.hypot(dead_load[:, 0], dead_load[:, 1]).sum() + tension.sum()
+    parts = max(1, ceil(arm.disk_spacing * sqrt(largest_force / bending_stiffness / MAX_FORCE)))
+    length = arm.disk_spacing / parts
+    force = bending_stiffness / length**2
+    cables = tuple(
+        _Cable(cable.name, cable.hole_offset / length, cable.anchor or arm.disks, tau / force)
+        for cable, tau in zip(arm.cables if tension.size else (), tension, strict=True)
+    )
+    return _Rod(
+        length=length,
+        force=force,
+        parts=parts,
+        rest_bend=arm.reference_curvature * length,
+        softness=force / axial_stiffness,
+        dead_load=dead_load / (force, force, force * length),
+        cables=cables,
+    )
+
+
+def _given(number: float | None) -> float:
+    """A number of the arm, which the scene has checked to be there."""
+    assert number is not None
+    return number
+
+
+def _dead_load(scene: Scene) -> np.ndarray:
+    """Weights and dead loads of the disks: force and moment, shape (disks, 3), N and N m."""
+    total = np.zeros((scene.arm.disks, 3))
+    for effect in scene.effects:
+        if isinstance(effect, Gravity):
+            total[:, :2] += _given(scene.arm.disk_mass) * np.array(effect.acceleration)
+        if isinstance(effect, DiskLoads):
+            for load in effect.loads:
+                total[load.disk - 1] += (*load.force, load.moment)
+    return total
+
+
+def _follow_loads(rod: _Rod) -> np.ndarray:
+    """Internal force and moment at the start of each piece under the full loads, shape (nodes, 3).
+
+    From the unloaded rod, whose internal loads are zero, by steps that halve where they fail.
+    """
+    loads = np.zeros((len(rod.dead_load) * rod.parts, 3))
+    reached, step = 0.0, 1.0
+    while reached < 1.0:
+        part = min(reached + step, 1.0)
+        try:
+            loads = _balanced(rod.under(part), loads)
+        except RodError as reason:
+            step /= 2
+            if step < SMALLEST_LOAD_STEP:
+                ending = _holes_met(rod, loads) or reason
+                raise RodError(f"the exact rod ends at {reached:.2%} of the loads: {ending}.") from reason
+        else:
+            reached, step = part, 2 * step
+    return loads
+
+
+def _balanced(rod: _Rod, start: np.ndarray) -> np.ndarray:
+    """Internal loads that balance every node, by Newton's method from ``start``.
+
+    A step more than half as long as the one before it ends the search, lest it finds another branch
+    (Deuflhard 2011, sec. 5.1). Raises ``RodError`` with the reason where they are not found near ``start``.
+    """
+    loads, longest = start, np.inf
+    for _ in range(MAX_ITERATIONS):
+        unbalance, matrix, _ = _newton_system(rod, loads)
+        step = _solved(matrix, unbalance).reshape(loads.shape)
+        length = np.abs(step).max()
+        if length > longest or np.abs(step[:, 2]).max() > MAX_BEND:
+            break
+        loads, longest = loads - step, length / 2
+        if length < STEP_TOLERANCE * max(1.0, np.abs(loads).max()):
+            _check_geometry(rod, start, loads)
+            _check_stability(rod, loads)
+            return loads
+    raise RodError("beyond it no balance of the disks was found")
+
+
+def _solved(matrix: np.ndarray, right_side: np.ndarray) -> np.ndarray:
+    try:
+        return np.linalg.solve(matrix, right_side)
+    except np.linalg.LinAlgError:
+        raise RodError("there the arm is neutrally stable") from None
+
+
+def _check_geometry(rod: _Rod, before: np.ndarray, loads: np.ndarray) -> None:
+    """Refuse a shape that is far from the one before, or that is no arm any more."""
+    ends = _piece_ends(rod, loads)
+    pose = _node_poses(ends)
+    turn = pose[:, 2] - _node_poses(_piece_ends(rod, before))[:, 2]
+    if np.abs(turn).max() > MAX_TURN:
+        raise RodError("beyond it the arm snaps to another shape")
+    if any((_gaps(cable, pose[:: rod.parts]) <= 0).any() for cable in rod.cables):
+        raise RodError("beyond it holes would pass each other")
+    axial = np.concatenate([loads[:, 0], (loads[:, :2] * _tangents(ends)).sum(axis=1)])
+    if (1 + rod.softness * axial <= 0).any():
+        raise RodError("there the core is crushed to nothing")
+
+
+def _check_stability(rod: _Rod, loads: np.ndarray) -> None:
+    """Refuse a shape where some small dead load on the nodes would do negative work."""
+    _, unbalance_by_loads, pose_by_loads = _newton_system(rod, loads)
+    compliance = _solved(unbalance_by_loads.T, pose_by_loads.T)
+    eigenvalues = np.linalg.eigvalsh((compliance + compliance.T) / 2)
+    if eigenvalues[0] < NEGATIVE * np.abs(eigenvalues).max():
+        raise RodError("beyond it the arm is not stable")
+
+
+def _holes_met(rod: _Rod, loads: np.ndarray) -> str | None:
+    """Of which cable two holes have all but met, as the end of a sentence."""
+    pose = _node_poses(_piece_ends(rod, loads))[:: rod.parts]
+    met = [cable.name for cable in rod.cables if _gaps(cable, pose).min() < MET * rod.parts]
+    return f"there the holes of cable '{met[0]}' meet" if met else None
+
+
+def _newton_system(rod: _Rod, loads: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Unbalance of all nodes, and its and their poses' derivatives by all internal loads.
+
+    Shapes (3 nodes,), (3 nodes, 3 nodes) twice. By complex steps; a piece's end depends on that piece's
+    loads alone, so three nudges of each give all that has to be integrated.
+    """
+    nudged = _piece_ends(rod, loads + 1j * NUDGE * np.eye(3)[:, None, :])
+    directions = np.eye(loads.size).reshape(-1, *loads.shape)
+    ends = np.real(nudged[0]) + 1j * np.einsum("dsc,ksd->ksc", np.imag(nudged), directions)
+    unbalance = _unbalance(rod, loads + 1j * NUDGE * directions, ends).reshape(loads.size, loads.size)
+    pose = _node_poses(ends)[:, 1:].reshape(loads.size, loads.size)
+    return np.real(unbalance[0]), np.imag(unbalance).T / NUDGE, np.imag(pose).T / NUDGE
+
+
+def _piece_ends(rod: _Rod, loads: np.ndarray) -> np.ndarray:
+    """Pose of each piece's end in the frame of its start, shape (..., nodes, 3), in lengths and rad.
+
+    ``loads`` has the same shape: force and moment at the start, in that frame, real or complex.
+    """
+    force_x, force_y, moment = np.moveaxis(loads, -1, 0)
+
+    def slope(_: float, state: np.ndarray) -> np.ndarray:
+        x, y, theta = state.reshape(3, *moment.shape)
+        cosine, sine = np.cos(theta), np.sin(theta)
+        stretch = 1 + rod.softness * (force_x * cosine + force_y * sine)
+        bend = rod.rest_bend + moment - (x * force_y - y * force_x)
+        return np.stack([stretch * cosine, stretch * sine, bend]).ravel()
+
+    start = np.zeros(loads.size, dtype=loads.dtype)
+    solution = solve_ivp(slope, (0.0, 1.0), start, method="DOP853", rtol=1e-13, atol=1e-15)
+    return np.moveaxis(solution.y[:, -1].reshape(3, *moment.shape), 0, -1)
+
+
+def _node_poses(ends: np.ndarray) -> np.ndarray:
+    """Poses of the base and the nodes, shape (..., nodes + 1, 3), from the pieces' ends."""
+    pose = np.zeros((*ends.shape[:-2], ends.shape[-2] + 1, 3), dtype=ends.dtype)
+    pose[..., 1:, 2] = np.cumsum(ends[..., 2], axis=-1)
+    pose[..., 1:, :2] = np.cumsum(_turned(ends[..., :2], pose[..., :-1, :]), axis=-2)
+    return pose
+
+
+def _unbalance(rod: _Rod, loads: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Force and moment that each node lacks for balance, shape (..., nodes, 3).
+
+    What the piece before it carries at its end, less what the next one carries at its start, less the
+    load of the disk.
+    """
+    pose = _node_poses(ends)
+    at_start = np.concatenate([_turned(loads[..., :2], pose[..., :-1, :]), loads[..., 2:]], axis=-1)
+    unbalance = at_start.copy()
+    unbalance[..., 2] -= _cross(ends, loads)
+    unbalance[..., :-1, :] -= at_start[..., 1:, :]
+    of_disks = unbalance[..., rod.parts - 1 :: rod.parts, :]
+    of_disks -= rod.dead_load
+    for cable in rod.cables:
+        _subtract_pull(cable, pose[..., :: rod.parts, :], of_disks)
+    return unbalance
+
+
+def _subtract_pull(cable: _Cable, pose: np.ndarray, unbalance: np.ndarray) -> None:
+    """Take a cable's pull towards the neighbouring holes from each disk. Rone 2012, Eq. 22-25."""
+    hole = _holes(cable, pose)
+    gap = np.diff(hole, axis=-2)
+    pull = cable.tension * gap / np.sqrt((gap**2).sum(axis=-1, keepdims=True))
+    on_disk = -pull
+    on_disk[..., :-1, :] += pull[..., 1:, :]
+    lever = (hole - pose[..., : cable.anchor + 1, :2])[..., 1:, :]
+    unbalance[..., : cable.anchor, :2] -= on_disk
+    unbalance[..., : cable.anchor, 2] -= _cross(lever, on_disk)
+
+
+def _holes(cable: _Cable, pose: np.ndarray) -> np.ndarray:
+    """Holes of a cable from the base to its anchor, shape (..., anchor + 1, 2)."""
+    passed = pose[..., : cable.anchor + 1, :]
+    return passed[..., :2] + _turned(np.array([0.0, cable.hole_offset]), passed)
+
+
+def _gaps(cable: _Cable, pose: np.ndarray) -> np.ndarray:
+    """From hole to hole along a span's mean direction, shape (anchor,): negative past each other."""
+    along = _tangents((pose[1:] + pose[:-1]) / 2)[: cable.anchor]
+    return (np.diff(_holes(cable, pose), axis=0) * along).sum(axis=1)
+
+
+def _tangents(pose: np.ndarray) -> np.ndarray:
+    """Unit vectors along +x of each pose's frame, shape (..., 2)."""
+    return np.stack([np.cos(pose[..., 2]), np.sin(pose[..., 2])], axis=-1)
+
+
+def _turned(vector: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """Vectors given in the frames of the poses, in the frame of the base; shape (..., 2)."""
+    cosine, sine = np.cos(pose[..., 2]), np.sin(pose[..., 2])
+    x, y = vector[..., 0], vector[..., 1]
+    return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
+
+
+def _cross(lever: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Moment of a force about the origin of its lever."""
+    return lever[..., 0] * force[..., 1] - lever[..., 1] * force[..., 0]
