@@ -4,6 +4,7 @@ Explicit first stage, one diagonal element, stiffly accurate, L-stable, second s
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,12 +19,12 @@ class Tableau:
     a: np.ndarray
     error_weights: np.ndarray
 
-    @property
+    @cached_property
     def c(self) -> np.ndarray:
         """Times of the stages in units of the step."""
         return self.a.sum(axis=1)
 
-    @property
+    @cached_property
     def predictor(self) -> np.ndarray:
         """Weights that extrapolate a stage's acceleration from those before it, shape (stages, stages).
 
