@@ -33,7 +33,8 @@ import math
 import numpy as np
 from numba import njit
 
-compiled = njit(cache=True, error_model="numpy", nogil=True)'''
+compiled = njit(cache=True, error_model="numpy", nogil=True)
+inlined = njit(inline="always", error_model="numpy")'''
 
 
 @dataclass
@@ -61,8 +62,8 @@ def compose(
             effects=", ".join(effects),
         ),
         _constants(bodies, columns),
-        *(_compiled(ladder_source(order)) for order in sorted(ladders)),
-        *map(_compiled, functions),
+        *(_inlined(ladder_source(order)) for order in sorted(ladders)),
+        *map(_inlined, functions),
         *(_functions_of(path) for path in sources),
     ]
     return "\n\n".join(parts) + "\n"
@@ -244,6 +245,11 @@ def _code(value: Any) -> str:
 
 def _compiled(function: str) -> str:
     return f"@compiled\n{function}"
+
+
+def _inlined(function: str) -> str:
+    """A step within its sweep's loop: as a call it would hand its many results over in memory."""
+    return f"@inlined\n{function}"
 
 
 def _functions_of(path: Path) -> str:
