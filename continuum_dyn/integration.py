@@ -71,6 +71,7 @@ def integrate(
     A run that the monitor stops early keeps the samples up to there, and the last acceptable state.
     """
     monitor.reached = (0.0, y)
+    steps, rejections = monitor.steps, monitor.rejections
     parts = [_Samples(samples[:1], y[None, :], stretches[0].tension(samples[:1]))]
     counters: Counter[str] = Counter()
     with interruptible(monitor), warnings.catch_warnings():
@@ -88,9 +89,9 @@ def integrate(
                 parts.append(_last_reached(parts, span, monitor.reached))
                 break
     times, states, tension = (np.concatenate(column) for column in zip(*parts, strict=True))
-    counters["steps"] = monitor.steps
+    counters["steps"] = monitor.steps - steps
     if solver.method == "chain":
-        counters["rejections"] = monitor.rejections
+        counters["rejections"] = monitor.rejections - rejections
     whole = trajectory_of(dynamics, times, states, tension, dict(counters))
     finite = whole.finite()
     if finite.time.size < whole.time.size:

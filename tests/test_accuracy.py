@@ -67,3 +67,11 @@ def test_estimate_is_the_distance_of_two_solutions() -> None:
     first = motion(scenario)
     shifted = replace(first, disk_x=first.disk_x + 3e-9, disk_y=first.disk_y + 4e-9)
     assert tip_distance(first, shifted) == pytest.approx(5e-9, rel=1e-6)
+
+
+def test_counters_are_those_of_the_run_that_was_kept() -> None:
+    scenario = load_scenario(SCENARIOS / "step_response.toml")
+    run = simulate(replace(scenario, accuracy=Accuracy(1e-6)))
+    assert run.trajectory is not None
+    assert run.solver is not None
+    assert run.trajectory.counters == motion(replace(scenario, solver=run.solver)).counters
