@@ -37,6 +37,7 @@ contracts: $(VENV)/dev
 benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 	$(BIN)/python benchmarks/equilibria.py
 	$(BIN)/python benchmarks/integrators.py
+	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/warm_run.py
 
 pictures: $(VENV)/dev ## Make the pictures of the README again.
