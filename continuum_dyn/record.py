@@ -6,8 +6,8 @@ as it is. A log is complete or not there: it is written beside its place and the
 """
 
 import platform
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -71,16 +71,8 @@ class Log:
 
 def write_log(run: Run, path: Path) -> None:
     """Write a run. Raises ``LogError`` if the file cannot be written; then nothing is left behind."""
-    part = path.with_name(path.name + ".part")
-    try:
-        with h5py.File(part, "w", libver=("v110", "v110")) as file:
-            _write(file, run)
-        part.replace(path)
-    except OSError as error:
-        raise LogError(f"cannot write the log {path}: {error.strerror or error}.") from error
-    finally:
-        with suppress(OSError):
-            part.unlink()
+    with _whole_file(path) as file:
+        _write(file, run)
 
 
 def read_log(path: Path) -> Log:
@@ -96,26 +88,31 @@ def read_log(path: Path) -> Log:
 
 def write_cost(cost: Cost, path: Path) -> None:
     """Write what accuracy costs as the group ``cost`` of a file of its own. Raises ``LogError``."""
-    part = path.with_name(path.name + ".part")
     prices = cost.prices
     columns = {
+        "method": np.array([p.method for p in prices], h5py.string_dtype()),
         "rtol": np.array([p.rtol for p in prices]),
         "tip_error": np.array([p.error for p in prices]),
         "solve_time": np.array([p.seconds for p in prices]),
         "steps": np.array([p.steps for p in prices]),
         "segment_evaluations": np.array([p.segment_evaluations for p in prices]),
     }
+    with _whole_file(path) as file:
+        file.attrs.update({"title": cost.scenario.title, "scenario": cost.scenario.text})
+        group = file.create_group("cost")
+        group.attrs["reference_gap"] = cost.reference_gap
+        _write_scale(group, "price", np.arange(1, len(prices) + 1))
+        for name, values in columns.items():
+            _write_dataset(group, name, values, ["price"])
+
+
+@contextmanager
+def _whole_file(path: Path) -> Iterator[h5py.File]:
+    """A new file that takes its place only when it is complete."""
+    part = path.with_name(path.name + ".part")
     try:
         with h5py.File(part, "w", libver=("v110", "v110")) as file:
-            file.attrs.update({"title": cost.scenario.title, "scenario": cost.scenario.text})
-            group = file.create_group("cost")
-            group.attrs["reference_gap"] = cost.reference_gap
-            _write_scale(group, "price", np.arange(1, len(prices) + 1))
-            _write_dataset(
-                group, "method", np.array([p.method for p in prices], h5py.string_dtype()), ["price"]
-            )
-            for name, values in columns.items():
-                _write_dataset(group, name, values, ["price"])
+            yield file
         part.replace(path)
     except OSError as error:
         raise LogError(f"cannot write {path}: {error.strerror or error}.") from error
