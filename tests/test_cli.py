@@ -146,6 +146,7 @@ def test_interrupted_run_exits_with_130_and_leaves_a_log(tmp_path: Path) -> None
         '"step", before = 0.0, after = 1.0', '"sine", mean = 1.0, amplitude = 0.9, frequency = 20.0'
     )
     long.write_text(text)
+    assert runner.invoke(app, ["run", STEP, "--out", str(tmp_path)]).exit_code == 0  # compiled from here on
     program = [sys.executable, "-c", "from continuum_dyn.cli import main; main()", "run", str(long), "--json"]
     process = subprocess.Popen([*program, "--out", str(tmp_path)], stdout=subprocess.PIPE, text=True)
     time.sleep(8.0)
