@@ -16,7 +16,13 @@ TIGHT = Solver("chain", rtol=1e-12, atol=1e-15)
 
 @pytest.mark.parametrize("tip", [1e-4, 1e-6, 1e-8])
 @pytest.mark.parametrize(
-    "name", ["step_response", "step_response_light_damping", "antagonistic", "slow_ramp"]
+    "name",
+    [
+        "step_response",
+        "step_response_light_damping",
+        "slow_ramp",
+        pytest.param("antagonistic", marks=pytest.mark.slow),
+    ],
 )
 def test_true_error_is_below_what_was_asked_and_not_far_below(name: str, tip: float) -> None:
     scenario = load_scenario(SCENARIOS / f"{name}.toml")

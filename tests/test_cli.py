@@ -149,7 +149,7 @@ def test_interrupted_run_exits_with_130_and_leaves_a_log(tmp_path: Path) -> None
     assert runner.invoke(app, ["run", STEP, "--out", str(tmp_path)]).exit_code == 0  # compiled from here on
     program = [sys.executable, "-c", "from continuum_dyn.cli import main; main()", "run", str(long), "--json"]
     process = subprocess.Popen([*program, "--out", str(tmp_path)], stdout=subprocess.PIPE, text=True)
-    time.sleep(8.0)
+    time.sleep(6.0)
     process.send_signal(signal.SIGINT)
     output, _ = process.communicate(timeout=60)
     assert process.returncode == 130

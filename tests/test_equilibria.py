@@ -11,6 +11,8 @@ from statics import (
     Bending,
     Cable,
     Cables,
+    DiskLoads,
+    Extension,
     Gravity,
     InputError,
     Outcome,
@@ -29,8 +31,8 @@ def test_soft_arm_ends_hanging_and_not_on_the_saddle_that_plain_newton_finds() -
 
 
 def test_upright_arm_leaves_the_straight_branch_where_it_is_unstable() -> None:
-    soft = Arm(16, 0.005, youngs_modulus=2.1e7, second_moment=2.011e-14, disk_mass=2e-4)
-    rest = equilibrium(Scene(soft, (Bending(), Gravity((-9.81, 0.0)))))
+    soft = Arm.preset("rone2012", disks=16, disk_spacing=0.005, youngs_modulus=2.1e7, disk_mass=2e-4)
+    rest = equilibrium(Scene(soft, (Bending(), Extension(), Gravity((-9.81, 0.0)))))
     assert rest.stable
     assert abs(rest.tip[2]) > 1.0
 
@@ -80,7 +82,7 @@ def test_cable_loads_segments_up_to_its_anchor_only() -> None:
 
 def test_reference_curvature_is_the_unloaded_shape() -> None:
     arm = Arm(10, 0.1, youngs_modulus=1.0, second_moment=1.0, reference_curvature=-0.7)
-    rest = equilibrium(Scene(arm, (Bending(),)))
+    rest = equilibrium(Scene(arm, (Bending(), DiskLoads())))
     np.testing.assert_allclose(rest.curvature, -0.7, rtol=1e-14)
 
 
