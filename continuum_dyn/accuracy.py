@@ -53,7 +53,8 @@ def to_accuracy(
 ) -> Accurate | None:
     """The loosest motion found whose tip error is estimated below ``tip`` (m); ``scale`` is the arm's length.
 
-    ``run`` integrates with the given settings, and returns None where it was stopped; then so does this.
+    ``run`` integrates with the given settings, and returns None where it was stopped; then so does this,
+    unless some pair of runs was done by then: the best of them is returned as not reached.
     """
     rtol = float(np.clip(tip / scale / 10.0, TIGHTEST, LOOSEST))
     tried: dict[float, Trajectory] = {}
@@ -64,7 +65,7 @@ def to_accuracy(
             if tolerance not in tried:
                 trajectory = run(replace(solver, rtol=tolerance, atol=1e-3 * tolerance))
                 if trajectory is None:
-                    return None
+                    return best and replace(best, reached=False, trials=tuple(trials))
                 tried[tolerance] = trajectory
         estimate = tip_distance(tried[rtol], tried[0.1 * rtol])
         trials.append((rtol, estimate))

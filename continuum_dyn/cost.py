@@ -1,4 +1,4 @@
-"""What accuracy costs: one motion by every method over a range of tolerances, and without each effect.
+"""What accuracy costs: a motion by every method and tolerance, on every mesh, and without each effect.
 
 Times are medians of repeats of the whole integration, samples and energies included; beside them stands
 the machine-independent work, in segment evaluations.
@@ -14,16 +14,19 @@ import numpy as np
 from continuum_dyn.accuracy import tip_distance
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
-from continuum_dyn.integrators import METHODS, Budget, Monitor
+from continuum_dyn.integrators import METHODS, Budget, Monitor, rates
+from continuum_dyn.mesh import between
 from continuum_dyn.profiles import spans
 from continuum_dyn.study import Method, MotionStudy, Scenario, Solver
 from continuum_dyn.trajectory import Trajectory
-from statics.equilibria import StaticSolver
+from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
+from statics.exact_rod import RodError, exact_rod
 from statics.scene import Scene
 
 TOLERANCES: dict[Method, tuple[float, ...]] = {
     "chain": (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
+    "explicit": (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9),
     "LSODA": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9),
     "Radau": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
     "BDF": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
@@ -34,6 +37,8 @@ TOLERANCES: dict[Method, tuple[float, ...]] = {
 """Relative tolerances tried, loosest first."""
 REFERENCES = (Solver("chain", rtol=1e-13, atol=1e-15), Solver("Radau", rtol=1e-12, atol=1e-15))
 """Two methods that must agree on the motion that errors are measured against."""
+SUBSEGMENTS = (1, 2, 4, 8, 16, 32, 64)
+"""Segments from disk to disk."""
 TARGETS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 """Tip errors (m) whose cheapest settings are the frontier."""
 REPEATS = 5
@@ -54,6 +59,25 @@ class Price:
 
 
 @dataclass(frozen=True)
+class MeshPrice:
+    """A number of segments from disk to disk: how far the tip rests from the exact rod's, and what it costs.
+
+    Under the motion's last tensions; ``tip_error`` in m, ``angle_error`` in rad. ``limit_error`` is that of
+    the tip extrapolated from this mesh and the one of half as many segments. ``seconds`` is the time of one
+    equilibrium, ``iterations`` times segments its work; ``motion_seconds`` that of the whole motion, None
+    where nodes without mass forbid it.
+    """
+
+    subsegments: int
+    tip_error: float
+    angle_error: float
+    limit_error: float | None
+    seconds: float
+    segment_evaluations: int
+    motion_seconds: float | None
+
+
+@dataclass(frozen=True)
 class Effect:
     """What leaving an effect out does: to the tip (m, largest over the samples), to time, to stiffness.
 
@@ -71,12 +95,14 @@ class Effect:
 class Cost:
     """The answer to what accuracy costs for a scenario.
 
-    ``reference_gap`` (m) is how far the two references differ; ``over_budget`` names the methods that
-    were given up, with the tolerance at which.
+    ``no_meshes`` says why there are no ``meshes``. ``reference_gap`` (m) is how far the two references
+    differ; ``over_budget`` names the methods that were given up, with the tolerance at which.
     """
 
     scenario: Scenario
     prices: tuple[Price, ...]
+    meshes: tuple[MeshPrice, ...]
+    no_meshes: str
     effects: tuple[Effect, ...]
     fastest_rate: float
     reference_gap: float
@@ -126,10 +152,7 @@ class Motion:
 
     def fastest_rate(self) -> float:
         """Largest rate (1/s) of the motion linearized at its start: what explicit steps must resolve."""
-        size = 2 * self.dynamics.size
-        span = self.stretches[0]
-        jacobian = self.dynamics.jacobian(span.start, self.start, span)[:size, :size]
-        return float(np.abs(np.linalg.eigvals(jacobian)).max())
+        return rates(self.dynamics, self.start, self.stretches[0])[1]
 
 
 def measure(scenario: Scenario, progress: Callable[[str], None] = lambda _: None) -> Cost:
@@ -145,9 +168,12 @@ def measure(scenario: Scenario, progress: Callable[[str], None] = lambda _: None
     if references[0] is None or references[1] is None:
         raise InputError("the motion does not get to its end; see its outcome with the command run.")
     prices, over_budget = _prices(motion, references[0], progress)
+    meshes, no_meshes = _meshes(scenario, progress)
     return Cost(
         scenario=scenario,
         prices=tuple(prices),
+        meshes=tuple(meshes),
+        no_meshes=no_meshes,
         effects=tuple(_effects(scenario, motion, progress)),
         fastest_rate=motion.fastest_rate(),
         reference_gap=tip_distance(references[0], references[1]),
@@ -174,6 +200,53 @@ def _prices(
             error = tip_distance(found, reference)
             prices.append(Price(method, rtol, error, motion.seconds(solver), counters["steps"], work))
     return prices, over_budget
+
+
+def _meshes(scenario: Scenario, progress: Callable[[str], None]) -> tuple[list[MeshPrice], str]:
+    """The equilibrium under the last tensions and the motion on every mesh; or why there is no exact rod."""
+    assert isinstance(scenario.study, MotionStudy)
+    last = spans(scenario.profiles, scenario.study.duration)[-1]
+    tension = last.tension(np.array([last.end]))[0]
+    progress("exact rod")
+    try:
+        rod = exact_rod(scenario.scene, tension).tip
+    except (InputError, RodError) as reason:
+        return [], str(reason)
+    found: list[MeshPrice] = []
+    tips: dict[int, np.ndarray] = {}
+    for subsegments in SUBSEGMENTS:
+        progress(f"{subsegments} segments from disk to disk")
+        meshed = scenario.with_mesh(subsegments, 1.0)
+        statics = StaticSolver(meshed.scene)
+        rest, seconds = _timed(lambda solver=statics: solver.solve(tension))
+        tips[subsegments] = np.array(rest.tip)
+        apart = np.abs(tips[subsegments] - rod)
+        limit = None
+        if subsegments // 2 in tips:
+            limit = float(np.hypot(*(between(tips[subsegments // 2], tips[subsegments]) - rod)[:2]))
+        work = rest.iterations * meshed.scene.arm.segments
+        error, angle, moved = float(np.hypot(*apart[:2])), float(apart[2]), _motion_seconds(meshed)
+        found.append(MeshPrice(subsegments, error, angle, limit, seconds, work, moved))
+    return found, ""
+
+
+def _motion_seconds(scenario: Scenario) -> float | None:
+    try:
+        motion = Motion(scenario)
+        motion.warm_up("chain")
+    except InputError:
+        return None
+    return motion.seconds(Solver("chain"))
+
+
+def _timed(work: Callable[[], Equilibrium]) -> tuple[Equilibrium, float]:
+    """The answer, and the median time of some repeats after one that is not counted."""
+    answer, times = work(), []
+    for _ in range(REPEATS):
+        started = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - started)
+    return answer, statistics.median(times)
 
 
 def _in_order(methods: Iterable[str]) -> list[Method]:

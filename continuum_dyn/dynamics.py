@@ -39,14 +39,14 @@ class Dynamics:
             raise InputError("motion needs the effect 'inertia'. Add inertia = {} to [effects].")
         self.scene = scene
         self.dofs = len(scene.coordinates)
-        self.size = scene.arm.disks * self.dofs
+        self.size = scene.arm.segments * self.dofs
         self.state_size = 2 * self.size + 2
         self.kernel = codegen.load(scene, RECIPE)
         self.segments = scene.table("segment", self.kernel.SEGMENT_COLUMNS)
         self.disks = scene.table("disk", self.kernel.DISK_COLUMNS)
 
     def state(self, coordinates: np.ndarray, rates: np.ndarray | None = None) -> np.ndarray:
-        """State from coordinates and rates, shape (disks, dofs), at rest by default; ledger at zero."""
+        """State from coordinates and rates, shape (segments, dofs), at rest by default; ledger at zero."""
         u = np.zeros_like(coordinates) if rates is None else rates
         return np.concatenate([coordinates.ravel(), u.ravel(), [0.0, 0.0]])
 
@@ -62,19 +62,21 @@ class Dynamics:
         """Smallest length or hole-to-hole length over L0."""
         return self.kernel.clearance_sweep(y[: self.size].reshape(-1, self.dofs), self.segments)
 
-    def closest_segment(self, y: np.ndarray) -> int:
-        """Number of the segment nearest to a geometric limit."""
-        q = y[: self.size].reshape(-1, 1, self.dofs)
-        alone = [self.kernel.clearance_sweep(q[i], self.segments[i : i + 1]) for i in range(len(q))]
+    def closest_disk(self, y: np.ndarray) -> int:
+        """Number of the disk before which the arm is nearest to a geometric limit."""
+        arm = self.scene.arm
+        q = y[: self.size].reshape(arm.disks, arm.subsegments, self.dofs)
+        segments = self.segments.reshape(*q.shape[:2], -1)
+        alone = [self.kernel.clearance_sweep(*span) for span in zip(q, segments, strict=True)]
         return int(np.argmin(alone)) + 1
 
     @property
     def frequency(self) -> float:
         """Scale of the arm's lowest frequency, sqrt((EJ / L) / (m n L^2)), rad/s; 1 without bending."""
         arm = self.scene.arm
-        columns = arm.segment_columns() | arm.disk_columns()
+        columns = arm.segment_columns()
         stiffness = float(columns.get("bending_stiffness", 0.0)) / arm.total_length
-        inertia = float(columns["disk_mass"]) * arm.disks * arm.total_length**2
+        inertia = float(np.sum(arm.node_columns()["node_mass"])) * arm.total_length**2
         return float(np.sqrt(stiffness / inertia)) if stiffness else 1.0
 
     def scales(self) -> np.ndarray:
@@ -85,7 +87,7 @@ class Dynamics:
         """
         arm = self.scene.arm
         energy = float(arm.segment_columns().get("bending_stiffness", arm.rest_length)) / arm.rest_length
-        q = np.tile([1.0, arm.rest_length][: self.dofs], arm.disks)
+        q = np.tile([1.0, arm.rest_length][: self.dofs], arm.segments)
         return np.concatenate([q, self.frequency * q, np.full(2, energy)])
 
     @cached_property
@@ -97,8 +99,8 @@ class Dynamics:
         return kernel, segments, disks
 
     def split(self, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and rates, each (samples, disks, dofs), of states (samples, size)."""
-        shape = (len(states), self.scene.arm.disks, self.dofs)
+        """Coordinates and rates, each (samples, segments, dofs), of states (samples, size)."""
+        shape = (len(states), self.scene.arm.segments, self.dofs)
         q, u = states[:, : self.size], states[:, self.size : 2 * self.size]
         return np.ascontiguousarray(q).reshape(shape), np.ascontiguousarray(u).reshape(shape)
 
@@ -108,10 +110,11 @@ class Dynamics:
         pose, velocity = np.empty((*q.shape[:2], 3)), np.empty((*q.shape[:2], 3))
         ledger = np.empty((len(states), len(LEDGER)))
         self.kernel.observe(q, u, tension, self.segments, self.disks, pose, velocity, ledger)
+        disk_x, disk_y, disk_theta = np.moveaxis(pose[:, self.scene.arm.disk_nodes], -1, 0)
         return Observation(
-            disk_x=pose[:, :, 0],
-            disk_y=pose[:, :, 1],
-            disk_theta=pose[:, :, 2],
+            disk_x=disk_x,
+            disk_y=disk_y,
+            disk_theta=disk_theta,
             tip_speed=np.hypot(velocity[:, -1, 0], velocity[:, -1, 1]),
             ledger=dict(zip(LEDGER, ledger.T, strict=True)),
         )

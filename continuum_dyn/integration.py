@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators import IMPLICIT, METHODS, Monitor, interruptible
+from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check, interruptible
 from continuum_dyn.profiles import Span
 from continuum_dyn.study import Solver
 from continuum_dyn.trajectory import Trajectory, trajectory_of
@@ -28,7 +28,7 @@ FIRST_STEP = 1e-3
 def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
     """Compile what the method needs, or load it compiled, so that what follows is solving alone."""
     brief = Span(span.start, span.start + BRIEF, span.pieces)
-    y = dynamics.state(np.zeros((dynamics.scene.arm.disks, dynamics.dofs)))
+    y = dynamics.state(np.zeros((dynamics.scene.arm.segments, dynamics.dofs)))
     dynamics.clearance(y)
     if solver.method in IMPLICIT:
         dynamics.jacobian(span.start, y, span)
@@ -51,8 +51,8 @@ def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome
             segment = index % dynamics.size // dynamics.dofs + 1
             return Outcome.DIVERGED, f"segment {segment} is no longer finite at t = {t:.6g} s"
         if dynamics.clearance(y) <= 0.0:
-            segment = dynamics.closest_segment(y)
-            return Outcome.GEOMETRY_LIMIT, f"holes meet on segment {segment} at t = {t:.6g} s"
+            disk = dynamics.closest_disk(y)
+            return Outcome.GEOMETRY_LIMIT, f"holes meet before disk {disk} at t = {t:.6g} s"
         return None
 
     return inspect
@@ -68,8 +68,10 @@ def integrate(
 ) -> Trajectory:
     """The motion from state ``y`` over all spans, at ``samples`` (s; both ends included).
 
-    A run that the monitor stops early keeps the samples up to there, and the last acceptable state.
+    A run that the monitor stops early keeps the samples up to there, and the last acceptable state. Raises
+    ``InputError`` where the method cannot integrate the scene.
     """
+    check(dynamics.scene, solver.method)
     monitor.reached = (0.0, y)
     steps, rejections = monitor.steps, monitor.rejections
     parts = [_Samples(samples[:1], y[None, :], stretches[0].tension(samples[:1]))]
@@ -90,7 +92,7 @@ def integrate(
                 break
     times, states, tension = (np.concatenate(column) for column in zip(*parts, strict=True))
     counters["steps"] = monitor.steps - steps
-    if solver.method == "chain":
+    if solver.method in TABLEAUX:
         counters["rejections"] = monitor.rejections - rejections
     whole = trajectory_of(dynamics, times, states, tension, dict(counters))
     finite = whole.finite()
@@ -112,8 +114,8 @@ def _counted(solution: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int
 
     One is a segment's part of a right-hand side, of a Newton iteration, or of one column of a Jacobian.
     """
-    n, columns = dynamics.scene.arm.disks, 2 * dynamics.size
-    if solver.method == "chain":
+    n, columns = dynamics.scene.arm.segments, 2 * dynamics.size
+    if solver.method in TABLEAUX:
         return {"newton_iterations": solution.nfev, "segment_evaluations": solution.nfev * n}
     return {
         "evaluations": int(solution.nfev),
@@ -145,9 +147,10 @@ def _solve_span(dynamics: Dynamics, solver: Solver, span: Span, at: np.ndarray, 
 
 def _options(dynamics: Dynamics, solver: Solver, span: Span) -> dict[str, Any]:
     """What the method needs beside the equations."""
-    if solver.method == "chain":
+    if solver.method in TABLEAUX:
         allowed = (solver.rtol + solver.atol) * dynamics.scene.arm.total_length
-        return {"dynamics": dynamics, "span": span, "tolerance": allowed}
+        tableau = TABLEAUX[solver.method]
+        return {"dynamics": dynamics, "span": span, "tolerance": allowed, "tableau": tableau}
     tolerances = {"rtol": solver.rtol, "atol": solver.atol * dynamics.scales()}
     if solver.method in IMPLICIT:
         return tolerances | {"jac": lambda t, y: dynamics.jacobian(t, y, span)}

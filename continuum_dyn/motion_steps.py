@@ -15,10 +15,12 @@ from statics.recursion import (
     Reach,
     Step,
     far_pose,
+    from_start,
     name_forces,
     placed,
     reach_of,
     residual_step,
+    span_ends,
     turn_frame,
     turned,
 )
@@ -69,9 +71,28 @@ def _far_acceleration(
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
 
-def _both(forces: SceneForces, kind: str, account: str, at_disk: dict[sp.Symbol, Any]) -> Any:
-    on_segment, on_disk = getattr(forces.on_segment, kind), getattr(forces.on_disk, kind)
-    return on_segment.get(account, 0) + placed(on_disk.get(account, 0), at_disk)
+def _span_velocity(
+    trace: Trace, forces: SceneForces, moving: dict[sp.Symbol, Any]
+) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    """Velocities of the span's two ends: what is carried on, and what the span's symbols stand for."""
+    if forces.span is None:
+        return {}, {}
+    carried, at_span = {}, dict(moving)
+    for rate in forces.span.rates[3:]:
+        name = rate.name.removeprefix("span_")
+        at_start = trace.let(f"from_{name}", from_start(symbol(f"near_{name}"), rate))
+        carried[rate.name] = (0.0, at_start)
+        at_span[rate] = at_start
+    return carried, at_span
+
+
+def _booked(forces: SceneForces, kind: str, account: str, at_disk: Any, at_span: Any) -> Any:
+    """One line of the ledger: what segment, disk and span put into it."""
+    booked = getattr(forces.on_segment, kind).get(account, 0)
+    booked += placed(getattr(forces.on_disk, kind).get(account, 0), at_disk)
+    if forces.on_span is not None:
+        booked += placed(getattr(forces.on_span, kind).get(account, 0), at_span)
+    return booked
 
 
 def motion_step(forces: SceneForces) -> Step:
@@ -82,16 +103,20 @@ def motion_step(forces: SceneForces) -> Step:
     pose, at_disk = far_pose(trace, forces, reach)
     motion, moving = _far_velocity(trace, forces, reach)
     push, pushed = _far_acceleration(trace, forces, reach)
-    at_disk |= moving | pushed
-    name_forces(trace, forces, at_disk)
-    powers = {name: trace.let(f"added_{name}", _both(forces, "powers", name, at_disk)) for name in POWERS}
+    ends, at_span = span_ends(trace, forces, frame, at_disk)
+    ends_motion, spanning = _span_velocity(trace, forces, moving)
+    at_disk, at_span = at_disk | moving | pushed, at_span | spanning
+    name_forces(trace, forces, at_disk, at_span)
+    powers = {
+        name: trace.let(f"added_{name}", _booked(forces, "powers", name, at_disk, at_span)) for name in POWERS
+    }
     return Step(
         "motion_step",
         "Outwards: reach, velocity, acceleration, loads; power in and power dissipated.",
         ("q", "u", "w", "tension", "segments", "disks", "chain"),
         trace,
         results={name: (0.0, symbol(name) + added) for name, added in powers.items()},
-        carried=frame | pose | motion | push,
+        carried=frame | pose | motion | push | ends | ends_motion,
     )
 
 
@@ -150,8 +175,14 @@ def observe_motion_step(forces: SceneForces) -> Step:
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
     motion, moving = _far_velocity(trace, forces, reach)
-    booked = {name: _both(forces, "energies", name, at_disk | moving) for name in ENERGIES}
-    booked |= {name: _both(forces, "powers", name, at_disk | moving) for name in POWERS}
+    ends, at_span = span_ends(trace, forces, frame, at_disk)
+    ends_motion, spanning = _span_velocity(trace, forces, moving)
+    at_disk, at_span = at_disk | moving, at_span | spanning
+    booked = {
+        name: _booked(forces, kind, name, at_disk, at_span)
+        for kind, names in (("energies", ENERGIES), ("powers", POWERS))
+        for name in names
+    }
     return Step(
         "observe_step",
         "Outwards: poses and velocities of the disks, energies and powers.",
@@ -160,9 +191,9 @@ def observe_motion_step(forces: SceneForces) -> Step:
         results={
             name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in booked.items()
         },
-        carried=frame | pose | motion,
+        carried=frame | pose | motion | ends | ends_motion,
         stores={
             "pose": [at_disk[coordinate] for coordinate in forces.disk.coordinates],
-            "velocity": [moving[rate] for rate in forces.disk.rates],
+            "velocity": [at_disk[rate] for rate in forces.disk.rates],
         },
     )

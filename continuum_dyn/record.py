@@ -16,7 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from continuum_dyn.cost import Cost
+from continuum_dyn.cost import Cost, MeshPrice
 from continuum_dyn.simulation import Run
 from continuum_dyn.study import MotionStudy, Scenario
 from continuum_dyn.trajectory import Trajectory
@@ -104,6 +104,20 @@ def write_cost(cost: Cost, path: Path) -> None:
         _write_scale(group, "price", np.arange(1, len(prices) + 1))
         for name, values in columns.items():
             _write_dataset(group, name, values, ["price"])
+        if cost.meshes:
+            _write_meshes(file.create_group("mesh"), cost.meshes)
+
+
+def _write_meshes(group: h5py.Group, meshes: Sequence[MeshPrice]) -> None:
+    _write_scale(group, "subsegments", np.array([mesh.subsegments for mesh in meshes]))
+    columns = {
+        "tip_error": [mesh.tip_error for mesh in meshes],
+        "angle_error": [mesh.angle_error for mesh in meshes],
+        "solve_time": [mesh.seconds for mesh in meshes],
+        "segment_evaluations": [mesh.segment_evaluations for mesh in meshes],
+    }
+    for name, values in columns.items():
+        _write_dataset(group, name, np.array(values), ["subsegments"])
 
 
 @contextmanager
@@ -154,10 +168,11 @@ def _root_attributes(run: Run) -> dict[str, Any]:
     }
     if isinstance(run.scenario.study, MotionStudy):
         attributes |= asdict(run.solver or run.scenario.solver)
-    if run.tip_error is not None:
-        attributes["tip_error"] = run.tip_error
-    if run.static_gap is not None:
-        attributes["static_gap"] = run.static_gap
+    for name in ("tip_error", "static_gap"):
+        if getattr(run, name) is not None:
+            attributes[name] = getattr(run, name)
+    if run.mesh is not None:
+        attributes |= {"mesh_error": run.mesh.estimate, "mesh_extrapolated": run.mesh.extrapolated}
     return attributes
 
 
@@ -206,8 +221,13 @@ def _write_group(
     group: h5py.Group, first: str, along: np.ndarray, columns: Mapping[str, np.ndarray], scenario: Scenario
 ) -> None:
     """Datasets whose first axis is ``first``, with the scales of all axes beside them."""
-    numbers = np.arange(1, scenario.scene.arm.disks + 1)
-    scales = {first: along, "segment": numbers, "disk": numbers, "cable": _names(scenario)}
+    arm = scenario.scene.arm
+    scales = {
+        first: along,
+        "segment": np.arange(1, arm.segments + 1),
+        "disk": np.arange(1, arm.disks + 1),
+        "cable": _names(scenario),
+    }
     for name, values in scales.items():
         _write_scale(group, name, values)
     for name, values in columns.items():

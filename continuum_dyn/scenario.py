@@ -82,7 +82,9 @@ class ArmTable(BaseModel):
     second_moment: Positive | None = None
     disk_mass: Positive | None = None
     disk_inertia: Positive | None = None
+    core_density: Positive | None = None
     reference_curvature: float | None = None
+    subsegments: int | str | None = None
 
 
 class CableTable(BaseModel):
@@ -202,6 +204,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         study=file.study,
         solver=file.solver,
         accuracy=file.accuracy,
+        chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or path.stem,
         text=text,
     )
@@ -209,7 +212,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
 
 def _arm(file: ScenarioFile) -> Arm:
     given = {name: value for name, value in file.arm.model_dump().items() if value is not None}
-    preset = given.pop("preset", None)
+    preset, _ = given.pop("preset", None), given.pop("subsegments", None)
     if preset is not None and preset not in PRESETS:
         raise InputError(f"[arm] unknown preset '{preset}'.{did_you_mean(preset, PRESETS)}")
     numbers = {**({} if preset is None else PRESETS[preset]), **_with_radius(given)}
@@ -222,7 +225,16 @@ def _arm(file: ScenarioFile) -> Arm:
         Cable(cable.name or f"cable_{number}", cable.hole_offset, cable.anchor)
         for number, cable in enumerate(file.cables, start=1)
     )
-    return Arm(**numbers, cables=cables)
+    return Arm(**numbers, subsegments=_subsegments(file.arm.subsegments), cables=cables)
+
+
+def _subsegments(given: int | str | None) -> int:
+    """Segments from disk to disk; where the program chooses them it starts from one."""
+    if given is None or given == "auto":
+        return 1
+    if isinstance(given, str) or given < 1:
+        raise InputError(f'[arm] subsegments: a number from 1 on, or "auto"; read {given!r}.')
+    return given
 
 
 def _with_radius(given: dict[str, Any]) -> dict[str, Any]:

@@ -14,12 +14,17 @@ from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Budget, Monitor, choose
+from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
 from continuum_dyn.profiles import Span, spans
 from continuum_dyn.settling import settled, tip_gap
-from continuum_dyn.study import MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
+from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
 from continuum_dyn.trajectory import Trajectory
+from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.outcome import Outcome
+
+TIME_PART = 0.25
+"""Part of the accuracy that a mesh's integration may use up; two extrapolated use nearly twice that."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +33,9 @@ class Run:
 
     ``equilibria`` are those of the study; for a motion the first one, the last one and, where asked for,
     those of every sample in ``static_path``. ``static_gap`` is the distance (m) of the tip from its final
-    equilibrium. ``solve_time`` (s) is the solving alone, with kernels loaded.
+    equilibrium. ``tip_error`` (m) is the estimate of the largest tip error where an accuracy was asked for;
+    ``mesh`` what was found, and its part of the error, where the program chose that, too.
+    ``solve_time`` (s) is the solving alone, with kernels loaded.
     """
 
     scenario: Scenario
@@ -40,7 +47,17 @@ class Run:
     static_gap: float | None = None
     solver: Solver | None = None
     tip_error: float | None = None
+    mesh: Mesh | None = None
     solve_time: float = 0.0
+
+    @property
+    def tips(self) -> np.ndarray | None:
+        """Places of the tip at the samples or points, shape (samples, 2), m; None if there are not all."""
+        if not (self.outcome.answered or self.outcome is Outcome.UNSTABLE_EQUILIBRIUM):
+            return None
+        if self.trajectory is not None:
+            return np.column_stack([self.trajectory.disk_x[:, -1], self.trajectory.disk_y[:, -1]])
+        return np.array([point.tip[:2] for point in self.equilibria])
 
     @property
     def tip(self) -> tuple[float, float, float] | None:
@@ -60,9 +77,60 @@ def simulate(
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
     kept. Whatever happens while solving is an outcome, not an exception.
     """
+    if scenario.chooses_mesh:
+        return _with_chosen_mesh(scenario, progress, budget or Budget())
     if isinstance(scenario.study, MotionStudy):
         return _motion(scenario, scenario.study, progress, budget or Budget())
     return _statics(scenario)
+
+
+def _with_chosen_mesh(scenario: Scenario, progress: Callable[[float], None] | None, budget: Budget) -> Run:
+    """The answer on the coarsest mesh that is fine enough, and the estimate of all of its error."""
+    assert scenario.accuracy is not None
+    runs: dict[int, Run] = {}
+
+    def tips(subsegments: int) -> np.ndarray | None:
+        if subsegments not in runs:
+            left = replace(budget, seconds=budget.seconds - (time.monotonic() - started))
+            runs[subsegments] = simulate(scenario.with_mesh(subsegments, TIME_PART * asked), progress, left)
+        return runs[subsegments].tips
+
+    started, asked, arm = time.monotonic(), scenario.accuracy.tip, scenario.scene.arm
+    most = MAX_SEGMENTS // arm.disks
+    if isinstance(scenario.study, MotionStudy):
+        most = min(most, MAX_STORED // (arm.disks * scenario.study.samples))
+    mesh = to_mesh(tips, (1.0 - 2.0 * TIME_PART) * asked, most)
+    solve_time = sum(run.solve_time for run in runs.values())
+    if mesh is None:
+        return replace(next(run for run in runs.values() if run.tips is None), solve_time=solve_time)
+    run = runs[mesh.subsegments]
+    if mesh.extrapolated:
+        run = _extrapolated(run, runs[2 * mesh.subsegments])
+    message = run.message if mesh.reached else _coarse(mesh, asked, solve_time)
+    error = mesh.estimate + (run.tip_error or 0.0)
+    return replace(run, message=message, tip_error=error, mesh=mesh, solve_time=solve_time)
+
+
+def _extrapolated(coarse: Run, fine: Run) -> Run:
+    """The finer run with the poses of the continuous arm."""
+    run = replace(
+        fine,
+        equilibria=list(map(extrapolated, coarse.equilibria, fine.equilibria)),
+        static_path=list(map(extrapolated, coarse.static_path, fine.static_path)),
+    )
+    if coarse.trajectory is None or fine.trajectory is None:
+        return run
+    error = (4.0 * (fine.tip_error or 0.0) + (coarse.tip_error or 0.0)) / 3.0
+    run = replace(run, trajectory=extrapolated(coarse.trajectory, fine.trajectory), tip_error=error)
+    assert isinstance(fine.scenario.study, MotionStudy)
+    return _compared(run, fine.scenario.study, run.equilibria[-1])
+
+
+def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
+    return (
+        f"accuracy of {asked:g} m not reached: {mesh.estimate:.2g} m from meshes of {mesh.subsegments} and "
+        f"{2 * mesh.subsegments} segments from disk to disk, after {seconds:.3g} s"
+    )
 
 
 def _statics(scenario: Scenario) -> Run:
@@ -100,14 +168,16 @@ def _motion(
     statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
     stretches = spans(scenario.profiles, study.duration)
     statics.warm_up()
-    solver = scenario.solver
-    if solver.method == "auto":
-        solver = replace(solver, method=choose(scenario.scene).method)
-    warm_up(dynamics, solver, stretches[0])
     started = time.perf_counter()
     start = statics.solve(scenario.initial_tension)
     if not start.found:
         return Run(scenario, start.outcome, _why(start), [start], solve_time=time.perf_counter() - started)
+    solver = scenario.solver
+    if solver.method == "auto":
+        y = dynamics.state(start.coordinates)
+        solver = replace(solver, method=choose(dynamics, y, stretches[0]).method)
+    warm_up(dynamics, solver, stretches[0])
+    started = time.perf_counter()
     monitor = Monitor(
         inspect=inspector(dynamics),
         progress=None if progress is None else lambda t: progress(t / study.duration),
@@ -158,13 +228,16 @@ def _moved(
         run(solver)
         return _Moved(last[-1], solver, None)
     asked = scenario.accuracy.tip
+    started = time.perf_counter()
     found = to_accuracy(run, solver, asked, scenario.scene.arm.total_length)
     if found is None:
         return _Moved(last[-1], solver, None)
     if not found.reached:
+        stopped = f"{monitor.message}; " if monitor.message else ""
         monitor.message = (
-            f"accuracy of {asked:g} m not reached: {found.estimate:.2g} m at rtol {found.solver.rtol:.1g}, "
-            f"after {len(found.trials)} trials"
+            f"{stopped}accuracy of {asked:g} m not reached: {found.estimate:.2g} m at rtol "
+            f"{found.solver.rtol:.1g}, after {len(found.trials)} trials and "
+            f"{time.perf_counter() - started:.3g} s"
         )
     return _Moved(found.trajectory, found.solver, found.estimate)
 

@@ -13,7 +13,7 @@ from statics.errors import InputError
 from statics.scene import Scene
 
 MAX_STORED = 20_000_000
-"""Most disks times samples that a log may hold."""
+"""Most segments times samples that a log may hold."""
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -64,18 +64,18 @@ STUDIES: dict[str, type[Study]] = {
     "step_response": StepResponseStudy,
 }
 
-Method = Literal["auto", "chain", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+Method = Literal["auto", "chain", "explicit", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 
 
 @dataclass(frozen=True, config=STRICT)
 class Solver:
     """Integrator and its local error tolerances.
 
-    "auto" takes "chain" for a scene with damping and "DOP853" for one without. "chain" is the arm's own
-    implicit method: a step's error may displace no disk by more than ``rtol`` + ``atol`` times the arm's
-    length. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend angles; elongations use
-    it times the segment's rest length, rates the same times the arm's natural frequency, energies times
-    its bending stiffness over that length.
+    "chain" is the arm's own implicit method and "explicit" its like for motions that are not stiff: a step's
+    error may displace no node by more than ``rtol`` + ``atol`` times the arm's length. "auto" decides between
+    them by the motion's own modes. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend
+    angles; elongations use it times the segment's rest length, rates the same times the arm's natural
+    frequency, energies times its bending stiffness over that length.
     """
 
     method: Method = "auto"
@@ -87,7 +87,8 @@ class Solver:
 class Accuracy:
     """Largest tip error (m) over the samples, against the exact motion of the same segments.
 
-    The program then chooses the tolerances, and checks.
+    The program then chooses the tolerances, and checks. If it chooses the segments, too, the error is that
+    against the continuous arm.
     """
 
     tip: Positive
@@ -99,7 +100,8 @@ class Scenario:
 
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
     ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
-    program's to choose. Raises ``InputError`` where these do not fit.
+    program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. Raises
+    ``InputError`` where these do not fit.
     """
 
     scene: Scene
@@ -107,14 +109,20 @@ class Scenario:
     study: Study
     solver: Solver = dataclasses.field(default_factory=Solver)
     accuracy: Accuracy | None = None
+    chooses_mesh: bool = False
     title: str = ""
     text: str = ""
 
     def __post_init__(self) -> None:
         if len(self.tension) != self.scene.cables:
             raise InputError(f"{len(self.tension)} tensions given for {self.scene.cables} cables.")
-        if self.accuracy is not None and not isinstance(self.study, MotionStudy):
-            raise InputError(f'[accuracy] belongs to a study of motion; this is "{self.study.kind}".')
+        if self.chooses_mesh and self.accuracy is None:
+            raise InputError('subsegments = "auto" needs an accuracy to aim at. Add [accuracy] tip, in m.')
+        if self.accuracy is not None and not (self.chooses_mesh or isinstance(self.study, MotionStudy)):
+            raise InputError(
+                f'[accuracy] belongs to a study of motion, or to subsegments = "auto"; this is '
+                f'"{self.study.kind}" with given segments.'
+            )
         if isinstance(self.study, MotionStudy):
             self._check_motion(self.study)
         elif isinstance(self.study, RampStudy):
@@ -129,11 +137,11 @@ class Scenario:
     def _check_motion(self, study: MotionStudy) -> None:
         if not self.scene.has("inertia"):
             raise InputError(f'a "{study.kind}" study needs inertia. Add inertia = {{}} to [effects].')
-        stored = study.samples * self.scene.arm.disks
+        stored = study.samples * self.scene.arm.segments
         if stored > MAX_STORED:
             raise InputError(
-                f"{study.samples} samples of {self.scene.arm.disks} disks would store {stored:.3g} poses. "
-                f"Allowed: {MAX_STORED:.3g}. Ask for fewer samples."
+                f"{study.samples} samples of {self.scene.arm.segments} segments would store {stored:.3g} "
+                f"shapes. Allowed: {MAX_STORED:.3g}. Ask for fewer samples."
             )
 
     @property
@@ -151,6 +159,16 @@ class Scenario:
         if len(lists) != len(self.tension):
             raise InputError('a "ramp" study takes lists of tensions, or numbers.')
         return lists
+
+    def with_mesh(self, subsegments: int, tip: float) -> "Scenario":
+        """The same with that many segments from disk to disk, in motion to within ``tip`` (m)."""
+        arm = dataclasses.replace(self.scene.arm, subsegments=subsegments)
+        return dataclasses.replace(
+            self,
+            scene=Scene(arm, self.scene.effects),
+            accuracy=Accuracy(tip) if isinstance(self.study, MotionStudy) else None,
+            chooses_mesh=False,
+        )
 
     @property
     def settled_within(self) -> float:

@@ -11,10 +11,18 @@ from typing import Any
 
 import sympy as sp
 
-from statics.effects import Effect, Pair
 from statics.scene import Scene
-from statics.segment import DiskSymbols, SegmentSymbols
-from statics.virtual_work import Forces, SceneForces, by_account, collect, dot, generalized_force, potential
+from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols
+from statics.virtual_work import (
+    Forces,
+    Groups,
+    SceneForces,
+    by_account,
+    derive,
+    dot,
+    generalized_force,
+    potential,
+)
 
 
 def velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol]) -> Any:
@@ -36,16 +44,10 @@ def partial_velocity(
 
 def derive_dynamics(scene: Scene) -> SceneForces:
     """Forces, energies and powers of all effects of the scene."""
-    segment, disk = SegmentSymbols(scene.coordinates, scene.cables), DiskSymbols()
-    return SceneForces(
-        segment,
-        disk,
-        _in_motion(collect(scene.effects, "segment", segment), segment),
-        _in_motion(collect(scene.effects, "disk", disk), disk),
-    )
+    return derive(scene, _in_motion)
 
 
-def _in_motion(groups: list[tuple[Effect, list[Pair]]], at: SegmentSymbols | DiskSymbols) -> Forces:
+def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
     pairs = [pair for _, group in groups for pair in group]
     force = generalized_force(
         pairs, lambda r, i: partial_velocity(r, at.coordinates, at.rates, i), at.coordinates

@@ -10,8 +10,9 @@ Positive senses, everywhere in the program::
         |        '-------'                 disk_theta > 0 : the disk has turned counter-clockwise
         +-----------------------> x
 
-A cable on the +y side bends the arm towards +y. Segment i ends in the centre of disk i;
-segments and disks count from 1 at the base.
+A cable on the +y side bends the arm towards +y. Disks and segments count from 1 at the base. Segment i
+ends in node i: the centre of disk i, or, with ``subsegments`` of them from disk to disk, every so-many-th
+node is a disk's centre and the others are points of the core.
 """
 
 from collections import Counter
@@ -26,9 +27,10 @@ from pydantic.dataclasses import dataclass
 from statics.checked import STRICT, Positive
 from statics.errors import InputError, did_you_mean
 
-MAX_DISKS = 10_000
+MAX_SEGMENTS = 10_000
 
-DiskNumber = Annotated[int, Field(ge=1, le=MAX_DISKS)]
+DiskNumber = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
+Subsegments = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -60,7 +62,9 @@ RONE2012_HOLE_OFFSET = 0.008
 class Arm:
     """A planar arm of equal segments. A number may stay None where no effect of the scene needs it.
 
-    Raises ``InputError`` for cables that do not fit, ``pydantic.ValidationError`` (a ``ValueError``)
+    ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` puts
+    the core's own mass on the nodes, half of each segment's on either end; ``disk_mass`` is then a disk's
+    alone. Raises ``InputError`` for cables that do not fit, ``pydantic.ValidationError`` (a ``ValueError``)
     for numbers of the wrong kind or sign.
     """
 
@@ -71,10 +75,19 @@ class Arm:
     second_moment: Positive | None = None
     disk_mass: Positive | None = None
     disk_inertia: Positive | None = None
+    core_density: Positive | None = None
     reference_curvature: float = 0.0
+    subsegments: Subsegments = 1
     cables: Annotated[tuple[Cable, ...], Field(strict=False)] = field(default=())
 
     def __post_init__(self) -> None:
+        if self.segments > MAX_SEGMENTS:
+            raise InputError(
+                f"{self.disks} disks with subsegments = {self.subsegments} are {self.segments} segments. "
+                f"Allowed: {MAX_SEGMENTS}."
+            )
+        if self.core_density is not None and self.area is None:
+            raise InputError("core_density needs the arm's area, which is not given. Give area.")
         for cable in self.cables:
             self._check(cable)
         for name, count in Counter(cable.name for cable in self.cables).items():
@@ -112,7 +125,17 @@ class Arm:
     @property
     def rest_length(self) -> float:
         """Undeformed length of one segment, L0, m."""
-        return self.disk_spacing
+        return self.disk_spacing / self.subsegments
+
+    @property
+    def segments(self) -> int:
+        """Number of segments, and of the nodes that they end in."""
+        return self.disks * self.subsegments
+
+    @property
+    def disk_nodes(self) -> slice:
+        """Those nodes, of all in a row, that are disks."""
+        return slice(self.subsegments - 1, None, self.subsegments)
 
     @property
     def total_length(self) -> float:
@@ -125,22 +148,49 @@ class Arm:
         return tuple(cable.name for cable in self.cables)
 
     def segment_columns(self) -> dict[str, np.ndarray | float]:
-        """What the arm knows of each segment, by glossary name: scalars, or shape (disks,)."""
+        """What the arm knows of each segment, by glossary name: scalars, or shape (segments,)."""
         columns: dict[str, np.ndarray | float | None] = {
             "rest_length": self.rest_length,
+            "disk_spacing": self.disk_spacing,
             "bending_stiffness": _product(self.youngs_modulus, self.second_moment),
             "axial_stiffness": _product(self.youngs_modulus, self.area),
             "reference_curvature": self.reference_curvature,
         }
-        segment = np.arange(1, self.disks + 1)
+        disk, is_disk = np.divmod(np.arange(1, self.segments + 1), self.subsegments)
+        columns["span_start"] = np.roll(is_disk == 0, 1).astype(float)
         for number, cable in enumerate(self.cables, start=1):
             columns[f"hole_offset_{number}"] = cable.hole_offset
-            columns[f"cable_passes_{number}"] = (segment <= (cable.anchor or self.disks)).astype(float)
+            passes = (is_disk == 0) & (disk <= (cable.anchor or self.disks))
+            columns[f"cable_passes_{number}"] = passes.astype(float)
         return _known(columns)
 
-    def disk_columns(self) -> dict[str, np.ndarray | float]:
-        """What the arm knows of each disk, by glossary name: scalars, or shape (disks,)."""
-        return _known({"disk_mass": self.disk_mass, "disk_inertia": self.disk_inertia})
+    def node_columns(self) -> dict[str, np.ndarray | float]:
+        """What the arm knows of each node, by glossary name, shape (segments,)."""
+        columns: dict[str, np.ndarray | float | None] = {"node_mass": None, "node_inertia": None}
+        if self.disk_mass is not None:
+            columns["node_mass"] = self.at_disks(self.disk_mass) + self._core_on_nodes()
+        if self.disk_inertia is not None:
+            columns["node_inertia"] = self.at_disks(self.disk_inertia)
+        return _known(columns)
+
+    @property
+    def massless_nodes(self) -> bool:
+        """Whether some nodes carry no mass: those between disks of a core without density."""
+        return self.subsegments > 1 and self.core_density is None
+
+    def at_disks(self, values: np.ndarray | float) -> np.ndarray:
+        """What stands on disks only, shape (disks,) or a scalar, over all nodes, shape (segments,)."""
+        spread = np.zeros(self.segments)
+        spread[self.disk_nodes] = values
+        return spread
+
+    def _core_on_nodes(self) -> np.ndarray | float:
+        """The core's own mass, half of a segment's on either end; the base carries the first half."""
+        if self.core_density is None or self.area is None:
+            return 0.0
+        mass = np.full(self.segments, self.core_density * self.area * self.rest_length)
+        mass[-1] /= 2
+        return mass
 
 
 def _product(first: float | None, second: float | None) -> float | None:

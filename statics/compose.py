@@ -240,7 +240,7 @@ class _Printer(PythonCodePrinter):
 
 
 def _code(value: Any) -> str:
-    return _Printer({"fully_qualified_modules": False}).doprint(sp.sympify(value))
+    return _Printer().doprint(sp.sympify(value))
 
 
 def _compiled(function: str) -> str:

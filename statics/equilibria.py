@@ -29,8 +29,8 @@ _OUTCOMES = {
 class Equilibrium:
     """An arm at rest under ``tension``, or the search for it where ``found`` is False.
 
-    Arrays have shape (disks,), ``tension`` (cables,), ``elongation`` is None in a scene without
-    extension; SI units. ``residual`` is the largest unbalanced generalized force, N or N m.
+    Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,); ``elongation`` is None in
+    a scene without extension; SI units. ``residual`` is the largest unbalanced generalized force, N or N m.
     """
 
     outcome: Outcome
@@ -65,7 +65,7 @@ class Equilibrium:
 
     @property
     def coordinates(self) -> np.ndarray:
-        """The generalized coordinates, shape (disks, 1 or 2): bend angle, and elongation if there is one."""
+        """The generalized coordinates, shape (segments, dofs): bend angle, and elongation if any."""
         parts = [self.bend_angle] if self.elongation is None else [self.bend_angle, self.elongation]
         return np.column_stack(parts)
 
@@ -80,26 +80,27 @@ class StaticSolver:
         self.disks = self.scene.table("disk", self.kernel.DISK_COLUMNS)
 
     def solve(self, tension: np.ndarray, start: np.ndarray | None = None) -> Equilibrium:
-        """The equilibrium that is reached from ``start``, shape (disks, dofs); from straight by default."""
+        """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default."""
         arm = self.scene.arm
-        q = np.zeros((arm.disks, len(self.scene.coordinates))) if start is None else start.copy()
+        q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
         ended, iterations = self.kernel.find_equilibrium(
             q, tension, self.segments, self.disks, arm.rest_length, MAX_ITERATIONS
         )
-        pose = np.empty((arm.disks, 3))
+        pose = np.empty((arm.segments, 3))
         elastic, gravity, residual, negative = self.kernel.examine(
             q, tension, self.segments, self.disks, pose
         )
         elongation = q[:, 1] if q.shape[1] == 2 else None
+        disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(
             outcome=_OUTCOMES[ended],
             tension=tension,
             bend_angle=q[:, 0],
             elongation=elongation,
             **shape_of(arm, q[:, 0], elongation),
-            disk_x=pose[:, 0],
-            disk_y=pose[:, 1],
-            disk_theta=pose[:, 2],
+            disk_x=disk_x,
+            disk_y=disk_y,
+            disk_theta=disk_theta,
             elastic_energy=elastic,
             gravity_energy=gravity,
             unstable_directions=negative,

@@ -120,6 +120,8 @@ def _check(scene: Scene) -> None:
         raise InputError(
             f"the exact rod does not know: {', '.join(unknown)}. Known: {', '.join(KNOWN_EFFECTS)}."
         )
+    if scene.arm.core_density is not None:
+        raise InputError("the exact rod has no mass of its own: it does not know core_density.")
     if not scene.has(Bending.name):
         raise InputError("the exact rod needs the effect 'bending', which the scene does not have.")
 

@@ -26,24 +26,29 @@ class Quantity:
 
 
 _TABLE = """
-disks                | n     | 1      | number of disks, and of segments
-disk_spacing         | L_0   | m      | undeformed distance between neighbouring disks, along the core
+disks                | n     | 1      | number of disks
+disk_spacing         | -     | m      | undeformed distance between neighbouring disks, along the core
 youngs_modulus       | E     | Pa     | Young's modulus E of the core
 core_radius          | -     | m      | radius of a round core; sets area and second_moment
 area                 | A     | m^2    | cross-section area A of the core
 second_moment        | J     | m^4    | second moment of area J of the core about the bending axis
-disk_mass            | m     | kg     | mass of a disk, with the core around it
-disk_inertia         | I     | kg m^2 | moment of inertia of a disk about an in-plane diameter
+disk_mass            | -     | kg     | mass of a disk, with the core around it unless core_density is given
+disk_inertia         | -     | kg m^2 | moment of inertia of a disk about an in-plane diameter
+core_density         | -     | kg/m^3 | density of the core; its mass then sits on the nodes
+subsegments          | -     | 1      | number of segments from disk to disk
 reference_curvature  | k_0   | 1/m    | curvature of the unloaded core
 
 rest_length          | L_0   | m      | undeformed length L0 of a segment
+node_mass            | m     | kg     | mass at a segment's end: the disk's, if there is one, and the core's
+node_inertia         | I     | kg m^2 | moment of inertia at a segment's end
+span_start           | -     | 1      | 1 on segments that start at a disk or the base
 bending_stiffness    | EJ    | N m^2  | E J of the core
 axial_stiffness      | EA    | N      | E A of the core
 hole_offset          | r     | m      | cable hole's place along the disk's y axis
 anchor               | -     | 1      | number of the disk where a cable ends
-cable_passes         | b     | 1      | 1 on segments that a cable runs along, 0 beyond its anchor
+cable_passes         | b     | 1      | 1 on segments whose end has a hole that a cable passes, 0 elsewhere
 tension              | tau   | N      | tension of a cable
-cable_length         | l     | m      | length of a cable from hole to hole over one segment
+cable_length         | l     | m      | length of a cable from hole to hole
 acceleration         | -     | m/s^2  | acceleration of gravity, a vector in the plane
 gravity_x            | g_x   | m/s^2  | acceleration of gravity along x
 gravity_y            | g_y   | m/s^2  | acceleration of gravity along y
@@ -80,7 +85,8 @@ input_work           | -     | J      | time integral of the input power since t
 price                | -     | 1      | number of a way to compute a motion
 method               | -     | 1      | name of an integrator
 rtol                 | -     | 1      | relative tolerance of an integrator
-tip_error            | -     | m      | largest distance of the tip from the exact motion, over the samples
+tip_error            | -     | m      | largest distance of the tip from where it exactly is, over the samples
+angle_error          | -     | rad    | angle of the tip against what it exactly is
 solve_time           | -     | s      | time that the solving takes
 steps                | -     | 1      | number of accepted integration steps
 segment_evaluations  | -     | 1      | work: one segment's part of an evaluation of the equations

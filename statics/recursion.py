@@ -10,6 +10,10 @@ end seen from there,
 The chain's second derivatives act through the reaction f = -sum P beyond the segment:
 
     f . R d_qq,   f . z x R d_q,   -f . R d
+
+Where several segments make a span from disk to disk, a cable joins the poses of the span's two ends. Then
+what is carried inwards belongs to two poses, that of the segment's near node and that of the disk at the
+span's start, with blocks of 6x6 instead of 3x3; at the span's first segment the two are one, and merge.
 """
 
 from dataclasses import dataclass, field
@@ -104,7 +108,10 @@ def turn_frame(trace: Trace, forces: SceneForces) -> dict[str, tuple[float, Any]
     far_cos = trace.let("far_cosine", cosine * turn_cos - sine * turn_sin)
     far_sin = trace.let("far_sine", sine * turn_cos + cosine * turn_sin)
     onto_circle = trace.let("onto_circle", (3 - far_cos**2 - far_sin**2) / 2)
-    return {"cosine": (1.0, far_cos * onto_circle), "sine": (0.0, far_sin * onto_circle)}
+    return {
+        "cosine": (1.0, trace.let("next_cosine", far_cos * onto_circle)),
+        "sine": (0.0, trace.let("next_sine", far_sin * onto_circle)),
+    }
 
 
 def far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
@@ -118,12 +125,43 @@ def far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str,
     return carried, at_disk
 
 
-def _smallest(trace: Trace, forces: SceneForces) -> Any:
+def from_start(near: Any, before: Any) -> Any:
+    """What holds at the start of the segment's span: the near node's value if the segment is its first."""
+    start = symbol("starts_span")
+    return start * near + (1 - start) * before
+
+
+def span_ends(
+    trace: Trace, forces: SceneForces, frame: dict[str, Any], at_disk: dict[sp.Symbol, Any]
+) -> tuple[dict[str, Any], dict[Any, Any]]:
+    """Poses of the span's two ends: what is carried on, and what the span's symbols stand for."""
+    if forces.span is None:
+        return {}, {}
+    trace.name("starts_span", symbol("span_start"))
+    carried, at_span = {}, dict(at_disk)
+    for name, start in (("x", 0.0), ("y", 0.0), ("theta", 0.0), ("cosine", 1.0), ("sine", 0.0)):
+        near = symbol(name if name in frame else f"near_{name}")
+        at_start = trace.let(f"from_{name}", from_start(near, symbol(f"span_{name}")))
+        carried[f"span_{name}"] = (start, at_start)
+        at_span[symbol(f"span_{name}")] = at_start
+    theta, span_theta = symbol("theta"), symbol("span_theta")
+    turns = {sp.cos(theta): frame["cosine"][1], sp.sin(theta): frame["sine"][1]}
+    turns |= {sp.cos(span_theta): carried["span_cosine"][1], sp.sin(span_theta): carried["span_sine"][1]}
+    for number, cable in enumerate(forces.span.cables, start=1):
+        squared = cable.length**2
+        value = trace.let(f"squared_{number}", squared.xreplace(turns | at_span))
+        length = trace.let(f"cable_length_{number}", sp.sqrt(value))
+        at_span |= {squared ** sp.Rational(power, 2): length**power for power in (1, -1, -3)}
+    return carried, turns | at_span
+
+
+def _smallest(trace: Trace, forces: SceneForces, at_span: dict[Any, Any]) -> Any:
     """Smallest so far of length and hole-to-hole lengths over L0; cables that do not pass are left out."""
-    rest = symbol("rest_length")
+    span, rest = forces.span or forces.segment, symbol("rest_length")
+    apart = rest if forces.span is None else symbol("disk_spacing")
     ratios = [
-        sp.Max(cable.length / rest, 1 - symbol(f"cable_passes_{number}"))
-        for number, cable in enumerate(forces.segment.cables, start=1)
+        sp.Max(placed(cable.gap, at_span) / apart, 1 - symbol(f"cable_passes_{number}"))
+        for number, cable in enumerate(span.cables, start=1)
     ]
     if forces.segment.elongation != 0:
         ratios.append(forces.segment.length / rest)
@@ -133,13 +171,16 @@ def _smallest(trace: Trace, forces: SceneForces) -> Any:
 def clearance_step(forces: SceneForces) -> Step:
     """How far the arm is from a geometric limit."""
     trace = Trace()
-    smallest = _smallest(trace, forces)
+    frame = turn_frame(trace, forces)
+    pose, at_disk = far_pose(trace, forces, reach_of(forces, trace))
+    ends, at_span = span_ends(trace, forces, frame, at_disk)
     return Step(
         "clearance_step",
         "Smallest length or hole-to-hole length over L0.",
         ("q", "segments"),
         trace,
-        results={"clearance": (1.0, smallest)},
+        results={"clearance": (1.0, _smallest(trace, forces, at_span))},
+        carried=frame | pose | ends,
     )
 
 
@@ -149,11 +190,14 @@ def pose_step(forces: SceneForces) -> Step:
     reach = reach_of(forces, trace)
     carried = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
-    name_forces(trace, forces, at_disk)
+    ends, at_span = span_ends(trace, forces, carried, at_disk)
+    name_forces(trace, forces, at_disk, at_span)
     energy = trace.let("segment_potential", sum(forces.on_segment.energies.values()))
     energy += trace.let("disk_potential", placed(sp.Add(*forces.on_disk.energies.values()), at_disk))
+    if forces.on_span is not None:
+        energy += trace.let("span_potential", placed(sp.Add(*forces.on_span.energies.values()), at_span))
     energy = trace.let("added_potential", energy)
-    smallest = _smallest(trace, forces)
+    smallest = _smallest(trace, forces, at_span)
     return Step(
         "pose_step",
         "Outwards, at rest: reach, loads, potential energy, clearance.",
@@ -164,7 +208,7 @@ def pose_step(forces: SceneForces) -> Step:
             "potential_scale": (0.0, symbol("potential_scale") + sp.Abs(energy)),
             "clearance": (1.0, smallest),
         },
-        carried={**carried, **pose},
+        carried=carried | pose | ends,
     )
 
 
@@ -173,13 +217,20 @@ def placed(expression: Any, at_disk: dict[sp.Symbol, Any]) -> Any:
     return expression.xreplace(at_disk) if hasattr(expression, "xreplace") else sp.sympify(expression)
 
 
-def name_forces(trace: Trace, forces: SceneForces, at_disk: dict[sp.Symbol, Any]) -> None:
+def name_forces(
+    trace: Trace, forces: SceneForces, at_disk: dict[sp.Symbol, Any], at_span: dict[Any, Any]
+) -> None:
     """Name the generalized forces and their derivatives for the inward sweeps."""
-    trace.let("segment_force", forces.on_segment.force)
-    trace.let("disk_force", placed(forces.on_disk.force, at_disk))
-    for name in ("mass", "damping", "stiffness"):
-        trace.symmetric(f"segment_{name}", getattr(forces.on_segment, name))
-        trace.symmetric(f"disk_{name}", placed(getattr(forces.on_disk, name), at_disk))
+    for place, of_place, at in (
+        ("segment", forces.on_segment, {}),
+        ("disk", forces.on_disk, at_disk),
+        ("span", forces.on_span, at_span),
+    ):
+        if of_place is None:
+            continue
+        trace.let(f"{place}_force", placed(of_place.force, at))
+        for name in ("mass", "damping", "stiffness"):
+            trace.symmetric(f"{place}_{name}", placed(getattr(of_place, name), at))
 
 
 def _named(name: str, value: sp.Matrix) -> sp.Matrix:
@@ -196,7 +247,7 @@ def _symmetric_named(name: str, value: sp.Matrix) -> sp.Matrix:
 
 
 def observe_step(forces: SceneForces) -> Step:
-    """Outwards, at rest: poses of the disks and the energies of the core and of the weight."""
+    """Outwards, at rest: poses of the nodes and the energies of the core and of the weight."""
     trace = Trace()
     reach = reach_of(forces, trace)
     frame = turn_frame(trace, forces)
@@ -222,21 +273,25 @@ def residual_step(forces: SceneForces) -> Step:
     """Inwards: reaction wrenches and the residual S^T (f, N) - Q (Eq. 5, with its sign turned)."""
     trace = Trace()
     reach = reach_of(forces)
-    carried = sp.Matrix([symbol(name) for name in ("force_x", "force_y", "torque")])
-    wrench = carried - _named("disk_force", forces.on_disk.force)
+    names = ("force_x", "force_y", "torque")
+    on_span = sp.zeros(6, 1) if forces.on_span is None else _named("span_force", forces.on_span.force)
+    on_disk = _named("disk_force", forces.on_disk.force) + on_span[:3, :]
+    wrench = sp.Matrix([symbol(name) for name in names]) - on_disk
     reaction = sp.Matrix([trace.name(f"reaction_{row}", value) for row, value in enumerate(wrench)])
     residual = reach.partials.T * reaction - _named("segment_force", forces.on_segment.force)
-    at_near = reach.transition.T * reaction
+    inwards = reach.transition.T * reaction
+    carried = dict(zip(names, inwards, strict=True))
+    if forces.on_span is not None:
+        at_start = sp.Matrix([symbol(f"span_{name}") for name in names]) - on_span[3:, :]
+        carried = dict(zip(names, inwards + symbol("starts_span") * at_start, strict=True))
+        inside = from_start(sp.zeros(3, 1), at_start)
+        carried |= {f"span_{name}": value for name, value in zip(names, inside, strict=True)}
     return Step(
         "residual_step",
         "Inwards: reaction on the segment's far disk and the segment's residual.",
         ("disks", "chain", "residual"),
         trace,
-        carried={
-            "force_x": (0.0, at_near[0]),
-            "force_y": (0.0, at_near[1]),
-            "torque": (0.0, at_near[2]),
-        },
+        carried={name: (0.0, value) for name, value in carried.items()},
         stores={"residual": list(residual)},
     )
 
@@ -270,10 +325,14 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
     trace = Trace()
     reach = reach_of(forces)
     dofs = len(forces.segment.coordinates)
-    carried = sp.Matrix(3, 3, lambda r, c: symbol(f"carried_{min(r, c)}{max(r, c)}"))
-    load = sp.Matrix([symbol(f"carried_load_{r}") for r in range(3)])
-    S, X = reach.partials, reach.transition
-    V = trace.symmetric("V", carried + _weighted(weights, forces.on_disk, "disk"))
+    S, X, here = reach.partials, reach.transition, _weighted(weights, forces.on_disk, "disk")
+    if forces.on_span is not None:
+        S, X, here = S.col_join(sp.zeros(3, dofs)), sp.diag(X, sp.eye(3)), sp.diag(here, sp.zeros(3))
+        here += _weighted(weights, forces.on_span, "span")
+    poses = range(S.shape[0])
+    carried = sp.Matrix(*X.shape, lambda r, c: symbol(f"carried_{min(r, c)}{max(r, c)}"))
+    load = sp.Matrix([symbol(f"carried_load_{r}") for r in poses])
+    V = trace.symmetric("V", carried + here)
     VS, VX = trace.let("VS", V * S), trace.let("VX", V * X)
     A = S.T * VS + _weighted(weights, forces.on_segment, "segment")
     C = VS.T * X
@@ -291,17 +350,27 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
     descent = trace.let("descent", inverse * b)
     next_load = X.T * load - C.T * descent
     next_V = D - C.T * gain
+    if forces.on_span is not None:
+        next_V, next_load = _merged(trace.symmetric("next_V", next_V), trace.let("next_load", next_load))
     return Step(
         "eliminate_step",
         "Inwards: one segment's coordinates eliminated; the rest goes to its near disk.",
         ("segments", "disks", "chain", "residual", "descent", "pivots"),
         trace,
         results={str(weight): (0.0, weight) for weight in weights.handed} | results,
-        carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r in range(3) for c in range(r, 3)}
-        | {f"carried_load_{r}": (0.0, next_load[r]) for r in range(3)},
+        carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r in poses for c in poses if c >= r}
+        | {f"carried_load_{r}": (0.0, next_load[r]) for r in poses},
         stores={"descent": list(descent)}
         | ({} if weights.definite else {"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]}),
     )
+
+
+def _merged(V: sp.Matrix, load: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+    """Matrix and load on (near node, span's start) where, at the span's first segment, the two are one."""
+    start, zero = symbol("starts_span"), sp.zeros(3)
+    both = sp.eye(3).row_join(sp.eye(3))
+    merged_V, merged_load = sp.diag(both * V * both.T, zero), (both * load).col_join(sp.zeros(3, 1))
+    return start * merged_V + (1 - start) * V, start * merged_load + (1 - start) * load
 
 
 def _weighted(weights: Weights, forces: Any, place: str) -> sp.Matrix:
@@ -350,25 +419,35 @@ def substitute_step(forces: SceneForces) -> Step:
     trace = Trace()
     reach = reach_of(forces)
     dofs = len(forces.segment.coordinates)
-    near = sp.Matrix([symbol(name) for name in ("shift_x", "shift_y", "shift_theta")])
-    gain = sp.Matrix(dofs, 3, lambda r, c: symbol(f"gain_{r}{c}"))
-    change = trace.let("change", sp.Matrix([symbol(f"descent_{a}") for a in range(dofs)]) - gain * near)
+    near, ends = _shifts("shift"), {}
+    known = near
+    if forces.span is not None:
+        before = _shifts("span_shift")
+        at_start = trace.let("from_shift", from_start(near, before))
+        ends = {str(name): (0.0, value) for name, value in zip(before, at_start, strict=True)}
+        known = near.col_join(at_start)
+    gain = sp.Matrix(dofs, len(known), lambda r, c: symbol(f"gain_{r}{c}"))
+    change = trace.let("change", sp.Matrix([symbol(f"descent_{a}") for a in range(dofs)]) - gain * known)
     far = reach.transition * near + reach.partials * change
     return Step(
         "substitute_step",
         "Outwards: the segment's part of the solution.",
         ("chain", "descent", "change"),
         trace,
-        carried={str(name): (0.0, value) for name, value in zip(near, far, strict=True)},
+        carried={str(name): (0.0, value) for name, value in zip(near, far, strict=True)} | ends,
         stores={"change": list(change)},
     )
+
+
+def _shifts(name: str) -> sp.Matrix:
+    return sp.Matrix([symbol(f"{name}_{part}") for part in ("x", "y", "theta")])
 
 
 def displacement_step(forces: SceneForces) -> Step:
     """Outwards: how far each disk moves under a small change of coordinates."""
     trace = Trace()
     reach = reach_of(forces)
-    near = sp.Matrix([symbol(name) for name in ("shift_x", "shift_y", "shift_theta")])
+    near = _shifts("shift")
     change = sp.Matrix([symbol(f"change_{a}") for a in range(len(forces.segment.coordinates))])
     far = trace.let("far_shift", reach.transition * near + reach.partials * change)
     return Step(

@@ -55,18 +55,23 @@ class Scene:
         """Number of cables in play: none unless the scene has the effect ``cables``."""
         return len(self.arm.cables) if self.has("cables") else 0
 
+    @property
+    def spans(self) -> bool:
+        """Whether cables run past nodes that are not disks: then they join poses further apart."""
+        return self.cables > 0 and self.arm.subsegments > 1
+
     def has(self, name: str) -> bool:
         """Whether the scene calls for the effect of that name."""
         return any(effect.name == name for effect in self.effects)
 
     def table(self, place: str, columns: Iterable[str]) -> np.ndarray:
-        """The run-time numbers of a kernel, shape (disks, columns), for "segment" or "disk"."""
-        known = dict(self.arm.segment_columns() if place == "segment" else self.arm.disk_columns())
+        """The run-time numbers of a kernel, shape (segments, columns), for "segment" or "disk" (nodes)."""
+        known = dict(self.arm.segment_columns() if place == "segment" else self.arm.node_columns())
         for effect in self.effects:
             if effect.place == place:
                 known.update(effect.columns(self.arm))
         names = list(columns)
-        table = np.empty((self.arm.disks, len(names)))
+        table = np.empty((self.arm.segments, len(names)))
         for number, name in enumerate(names):
             table[:, number] = known[name]
         return table

@@ -28,10 +28,19 @@ def _parameter(name: str) -> sp.Symbol:
 
 
 class CableSymbols(NamedTuple):
-    """One cable along one segment: its tension there and its hole-to-hole length (Eq. 23)."""
+    """One cable from hole to hole: its tension there, its length (Eq. 23), and how far the holes are apart.
+
+    ``gap`` is the length with a sign: negative once the holes have passed each other.
+    """
 
     tension: Any
     length: Any
+    gap: Any
+
+
+def _tension(number: int) -> Any:
+    """Tension of a cable where it passes; beyond its anchor, and between disks, it is zero."""
+    return symbol(f"tension_{number}") * symbol(f"cable_passes_{number}")
 
 
 class SegmentSymbols:
@@ -66,19 +75,51 @@ class SegmentSymbols:
 
     @cached_property
     def cables(self) -> list[CableSymbols]:
-        """Every cable of the scene; beyond its anchor its tension is zero."""
+        """Every cable of the scene, along a segment between neighbouring disks."""
         return [self._cable(number) for number in range(1, self.number_of_cables + 1)]
 
     def _cable(self, number: int) -> CableSymbols:
         hole_offset = symbol(f"hole_offset_{number}")
-        tension = symbol(f"tension_{number}") * symbol(f"cable_passes_{number}")
+        length = Sigma(0, self.half_angle) * (self.length - self.bend_angle * hole_offset)
+        return CableSymbols(_tension(number), length, length)
+
+
+class SpanSymbols:
+    """The core from one disk to the next where several segments make it: the poses of its two ends.
+
+    Ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with ``span_``.
+    """
+
+    def __init__(self, cables: int) -> None:
+        self.number_of_cables = cables
+        self.coordinates = [symbol(f"{end}{name}") for end in ("", "span_") for name in ("x", "y", "theta")]
+        self.rates = [
+            symbol(f"{end}{name}")
+            for end in ("", "span_")
+            for name in ("velocity_x", "velocity_y", "angular_velocity")
+        ]
+        self.accelerations = [symbol(f"{coordinate}_acceleration") for coordinate in self.coordinates]
+
+    @cached_property
+    def cables(self) -> list[CableSymbols]:
+        """Every cable of the scene, straight from hole to hole."""
+        return [self._cable(number) for number in range(1, self.number_of_cables + 1)]
+
+    def _cable(self, number: int) -> CableSymbols:
+        x, y, theta, span_x, span_y, span_theta = self.coordinates
+        hole_offset = symbol(f"hole_offset_{number}")
+        along_x = x - span_x - hole_offset * (sp.sin(theta) - sp.sin(span_theta))
+        along_y = y - span_y + hole_offset * (sp.cos(theta) - sp.cos(span_theta))
+        mean = (theta + span_theta) / 2
         return CableSymbols(
-            tension, Sigma(0, self.half_angle) * (self.length - self.bend_angle * hole_offset)
+            _tension(number),
+            sp.sqrt(along_x**2 + along_y**2),
+            along_x * sp.cos(mean) + along_y * sp.sin(mean),
         )
 
 
 class DiskSymbols:
-    """One disk: pose, velocity, acceleration; any other glossary name is a parameter of it."""
+    """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters."""
 
     def __init__(self) -> None:
         self.position = (symbol("x"), symbol("y"))

@@ -15,7 +15,10 @@ import sympy as sp
 from statics.effects import Effect, Pair
 from statics.errors import InputError
 from statics.scene import Scene
-from statics.segment import DiskSymbols, SegmentSymbols
+from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols
+
+Groups = list[tuple[Effect, list[Pair]]]
+"""Effects, each with its pairs at one place."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +39,17 @@ class Forces:
 
 @dataclass(frozen=True)
 class SceneForces:
-    """The forces of one segment and of one disk, with the symbols that they are written in."""
+    """The forces of one segment, of one disk, and of one span, with the symbols that they are written in.
+
+    A span that is one segment has no forces of its own: they are the segment's.
+    """
 
     segment: SegmentSymbols
     disk: DiskSymbols
     on_segment: Forces
     on_disk: Forces
+    span: SpanSymbols | None = None
+    on_span: Forces | None = None
 
 
 def dot(first: Any, second: Any) -> Any:
@@ -85,7 +93,7 @@ def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
     raise InputError(f"no potential is known for the load {load} along {displacement}")
 
 
-def collect(effects: Iterable[Effect], place: str, at: Any) -> list[tuple[Effect, list[Pair]]]:
+def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
     """The pairs of every effect at that place; a displacement that the scene does not have drops out."""
     return [
         (effect, [pair for pair in effect.pairs(at) if pair.displacement != 0])
@@ -96,17 +104,24 @@ def collect(effects: Iterable[Effect], place: str, at: Any) -> list[tuple[Effect
 
 def derive_statics(scene: Scene) -> SceneForces:
     """Forces of the effects that act at rest, with their potentials, those of the loads included."""
+    return derive(scene.at_rest, _at_rest)
+
+
+def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
+    """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
     segment, disk = SegmentSymbols(scene.coordinates, scene.cables), DiskSymbols()
-    effects = scene.at_rest.effects
-    return SceneForces(
-        segment,
-        disk,
-        _at_rest(collect(effects, "segment", segment), segment.coordinates),
-        _at_rest(collect(effects, "disk", disk), disk.coordinates),
-    )
+    on_segment = collect(scene.effects, "segment", segment)
+    on_disk = forces_at(collect(scene.effects, "disk", disk), disk)
+    if not scene.spans:
+        on_segment += collect(scene.effects, "span", segment)
+        return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk)
+    span = SpanSymbols(scene.cables)
+    on_span = forces_at(collect(scene.effects, "span", span), span)
+    return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk, span, on_span)
 
 
-def _at_rest(groups: list[tuple[Effect, list[Pair]]], coordinates: Sequence[sp.Symbol]) -> Forces:
+def _at_rest(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+    coordinates = at.coordinates
     pairs = [pair for _, group in groups for pair in group]
     force = generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)
     none = sp.zeros(len(coordinates))
@@ -114,7 +129,7 @@ def _at_rest(groups: list[tuple[Effect, list[Pair]]], coordinates: Sequence[sp.S
     return Forces(force, none, none, -force.jacobian(coordinates), energies)
 
 
-def by_account(groups: list[tuple[Effect, list[Pair]]], amount: Callable[[Pair], Any]) -> dict[str, Any]:
+def by_account(groups: Groups, amount: Callable[[Pair], Any]) -> dict[str, Any]:
     """Sum of an amount over the pairs of the effects that share an account."""
     sums: dict[str, Any] = {}
     for effect, group in groups:

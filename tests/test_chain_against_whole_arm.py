@@ -13,6 +13,7 @@ from whole_arm import (
     full_scene,
     random_state,
     relative_error,
+    spanned_scene,
     stiff_scene,
 )
 
@@ -67,6 +68,15 @@ def test_accelerations_equal_kanes_method_on_the_whole_arm(
     for seed in SEEDS:
         q, u = random_state(scene, seed)
         assert relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u)) < ROUNDING
+
+
+def test_accelerations_equal_kanes_method_where_cables_pass_nodes_between_disks() -> None:
+    for disks, subsegments in ((1, 3), (2, 2)):
+        scene = spanned_scene(disks, subsegments)
+        for seed in SEEDS:
+            q, u = random_state(scene, seed, bend=0.7)
+            error = relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u))
+            assert error < 10 * ROUNDING
 
 
 @pytest.mark.slow
@@ -137,7 +147,7 @@ def test_kinetic_energy_is_that_of_kanes_mass_matrix(scene_of: Callable[[int], S
 
 def kinds_of(dynamics: Dynamics) -> np.ndarray:
     """Kind of each entry of the state: bends, elongations, their rates, input work, dissipated energy."""
-    q = np.tile(np.arange(dynamics.dofs), dynamics.scene.arm.disks)
+    q = np.tile(np.arange(dynamics.dofs), dynamics.scene.arm.segments)
     return np.concatenate([q, q + dynamics.dofs, [2 * dynamics.dofs, 2 * dynamics.dofs + 1]])
 
 
@@ -152,13 +162,13 @@ def block_error(actual: np.ndarray, expected: np.ndarray, kinds: np.ndarray) -> 
     return worst
 
 
-@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene])
+@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, spanned_scene])
 def test_exact_jacobian_equals_differences_of_the_rate(scene_of: Callable[[int], Scene]) -> None:
     scene = scene_of(4)
     dynamics = Dynamics(scene)
     q, u = random_state(scene, seed=7)
     y, span = dynamics.state(q, u), pulling(scene)
-    of_q, of_u = [0.01, 0.01 * scene.arm.disk_spacing], [1.0, 0.1]
+    of_q, of_u = [0.01, 0.01 * scene.arm.rest_length], [1.0, 0.1]
     steps = np.array([*of_q[: dynamics.dofs], *of_u[: dynamics.dofs], 1.0, 1.0])
     expected = difference_matrix(lambda y: dynamics.rate(TIME, y, span), y, steps[kinds_of(dynamics)])
     assert block_error(dynamics.jacobian(TIME, y, span), expected, kinds_of(dynamics)) < 1e-9
@@ -187,7 +197,7 @@ def test_compiled_equilibrium_equals_interpreted_equilibrium() -> None:
     assert relative_error(compiled_q, interpreted_q) < 1e-13
 
 
-@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene])
+@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, spanned_scene])
 def test_virtual_power_at_rest_equals_virtual_work(scene_of: Callable[[int], Scene]) -> None:
     scene = scene_of(5)
     motion, statics, tension = Dynamics(scene), StaticSolver(scene), tension_at(scene)

@@ -86,7 +86,7 @@ def test_outcome_without_an_answer_exits_with_1(tmp_path: Path) -> None:
     assert result.exit_code == 1
     record = json.loads(result.stdout)
     assert record["outcome"] == "geometry_limit"
-    assert "segment" in record["message"]
+    assert "disk" in record["message"]
     assert Path(record["log"]).exists()
 
 

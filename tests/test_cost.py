@@ -27,6 +27,7 @@ def brief(monkeypatch: pytest.MonkeyPatch) -> Scenario:
     }
     monkeypatch.setattr(cost, "TOLERANCES", few)
     monkeypatch.setattr(cost, "REPEATS", 1)
+    monkeypatch.setattr(cost, "SUBSEGMENTS", (1, 2, 4))
     monkeypatch.setattr(cost, "PATIENCE", 0.5)
     scenario = load_scenario(SCENARIOS / "step_response.toml")
     return replace(scenario, study=MotionStudy(0.02, samples=21))
@@ -64,9 +65,31 @@ def test_fastest_rate_is_that_of_the_axial_modes(prices: cost.Cost) -> None:
 
 
 def test_picture_has_a_curve_for_each_method(prices: cost.Cost) -> None:
-    by_time, by_work = plots.cost(prices).axes
+    by_time, by_work, by_mesh = plots.cost(prices).axes
     assert [line.get_label() for line in by_work.lines] == ["chain", "LSODA"]
     assert np.shape(by_time.lines[0].get_xdata()) == (3,)
+    assert [line.get_label() for line in by_mesh.lines] == ["one mesh", "from two"]
+
+
+def test_meshes_are_held_against_the_exact_rod(prices: cost.Cost) -> None:
+    one, two, four = prices.meshes
+    assert one.tip_error > 3.5 * two.tip_error > 12 * four.tip_error
+    assert one.limit_error is None
+    assert two.limit_error is not None
+    assert four.limit_error is not None
+    assert two.limit_error > 12 * four.limit_error
+    assert four.motion_seconds is not None
+    assert four.segment_evaluations % 16 == 0
+
+
+def test_scene_that_the_exact_rod_does_not_know_has_no_meshes(
+    brief: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cost, "_effects", lambda *_: [])
+    heavy = replace(brief.scene.arm, core_density=7850.0)
+    found = cost.measure(replace(brief, scene=replace(brief.scene, arm=heavy)))
+    assert found.meshes == ()
+    assert "core_density" in found.no_meshes
 
 
 def test_equilibrium_has_no_cost_over_time() -> None:

@@ -165,7 +165,7 @@ def carried_loads(scene: Scene, shape: RodShape, tension: np.ndarray) -> np.ndar
     for effect in scene.effects:
         columns = effect.columns(scene.arm)
         if isinstance(effect, Gravity):
-            force += scene.arm.disk_columns()["disk_mass"] * np.array(effect.acceleration)
+            force += scene.arm.disk_mass * np.array(effect.acceleration)
         if isinstance(effect, DiskLoads):
             force += np.column_stack([columns["load_force_x"], columns["load_force_y"]])
             moment += columns["load_moment"]

@@ -12,7 +12,7 @@ from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.integrators import ChainSolver, choose
-from continuum_dyn.integrators.tableau import ESDIRK5, Tableau
+from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.profiles import Sine, Span, Step, spans
 from continuum_dyn.study import Method, MotionStudy, Solver
 from statics import Scene, equilibrium
@@ -71,15 +71,15 @@ def test_tableau_has_its_order_and_is_stiffly_accurate_and_l_stable() -> None:
     assert max(grown) < 1 + 1e-12
 
 
-def fixed_steps(dynamics: Dynamics, span: Span, y: np.ndarray, count: int) -> np.ndarray:
+def fixed_steps(dynamics: Dynamics, span: Span, y: np.ndarray, count: int, tableau: Tableau) -> np.ndarray:
     """The state at the span's end after ``count`` equal steps."""
     kernel, segments, disks = dynamics.implicit
     arm = (span.pieces, segments, disks)
     shape = (count + 1, dynamics.scene.arm.disks, dynamics.dofs)
     records = (np.empty(shape[0]), np.empty((shape[0], y.size)), np.empty(shape), np.empty((shape[0], 2)))
-    method = (ESDIRK5.a, ESDIRK5.c, ESDIRK5.error_weights, ESDIRK5.predictor)
+    method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor)
     n, dofs = shape[1:]
-    stages = tuple(np.empty((len(ESDIRK5.c), n, dofs)) for _ in range(3))
+    stages = tuple(np.empty((len(tableau.c), n, dofs)) for _ in range(3))
     work, chain = np.empty((6, n, dofs)), np.empty((n, kernel.CHAIN_COLUMNS))
     kernel.start_records(span.start, y, arm, records)
     times, states, accelerations, powers = records
@@ -92,18 +92,28 @@ def fixed_steps(dynamics: Dynamics, span: Span, y: np.ndarray, count: int) -> np
     return states[-1, : 2 * dynamics.size]
 
 
-def test_steps_of_fixed_size_have_the_stated_order() -> None:
+@pytest.mark.parametrize(
+    ("tableau", "order", "counts"),
+    [
+        (ESDIRK5, 5, (28, 40, 56, 80, 112)),
+        (SDIRK4, 4, (28, 40, 56, 80, 112)),
+        (DOPRI8, 8, (24, 28, 34, 40, 48)),
+    ],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_steps_of_fixed_size_have_the_stated_order(
+    tableau: Tableau, order: int, counts: tuple[int, ...]
+) -> None:
     plain = rone2012(disks=2)
     effects = [effect for effect in plain.effects if effect.name != "extension"]
     hardly_damped = MaterialDamping(retardation_time=1e-9)  # more would be stiff, and stiffness costs order
     scene = Scene(plain.arm, (*effects, Inertia(), RotaryInertia(), hardly_damped))
     dynamics, (span,) = Dynamics(scene), spans((Sine(1.0, 0.9, 9.0),), 0.04)
     y = dynamics.state(equilibrium(scene, 0.3).coordinates)
-    reference = fixed_steps(dynamics, span, y, 1280)
-    counts = np.array([28, 40, 56, 80, 112])
+    reference = fixed_steps(dynamics, span, y, 1280, ESDIRK5)
     scale = dynamics.scales()[: 2 * dynamics.size]
-    errors = [np.abs((fixed_steps(dynamics, span, y, int(n)) - reference) / scale).max() for n in counts]
-    assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-5.0, abs=0.3)
+    errors = [np.abs((fixed_steps(dynamics, span, y, n, tableau) - reference) / scale).max() for n in counts]
+    assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-order, abs=0.4)
 
 
 def test_tip_error_follows_the_tolerance(step_response: Scenario) -> None:
@@ -190,12 +200,38 @@ def test_jump_at_the_start_is_resolved_though_the_axial_modes_are_fast(step_resp
     np.testing.assert_allclose(chain.elongation, radau.elongation, atol=2e-3 * np.ptp(radau.elongation))
 
 
-def test_auto_takes_the_chain_where_something_is_damped_and_keeps_energy_where_nothing_is() -> None:
+def chosen(scene: Scene) -> str:
+    dynamics = Dynamics(scene)
+    start = dynamics.state(equilibrium(scene, 0.0).coordinates)
+    return choose(dynamics, start, spans((Step(0.0, 1.0),), 1.0)[0]).method
+
+
+def without_extension(disks: int) -> Scene:
+    scene = moving(rone2012(disks=disks))
+    return Scene(scene.arm, (effect for effect in scene.effects if effect.name != "extension"))
+
+
+def test_auto_goes_by_the_motions_own_modes() -> None:
     damped, free = moving(rone2012()), moving(rone2012(), damping=False)
     undamped = Scene(free.arm, (*free.effects, MaterialDamping(retardation_time=0.0)))
-    assert [choose(scene).method for scene in (damped, free, undamped)] == ["chain", "DOP853", "DOP853"]
-    run = simulate(Scenario(free, (Step(before=2.0, after=0.0),), MotionStudy(0.01, samples=11)))
-    assert run.solver is not None
-    assert run.trajectory is not None
-    assert run.solver.method == "DOP853"
-    assert np.abs(run.trajectory.ledger_gap).max() < 1e-6 * run.trajectory.ledger["kinetic_energy"].max()
+    assert chosen(damped) == "chain"
+    assert [chosen(without_extension(disks)) for disks in (1, 3, 4)] == ["explicit", "chain", "chain"]
+    assert [chosen(scene) for scene in (free, undamped)] == ["explicit", "explicit"]
+
+
+def test_undamped_motion_keeps_its_energy_under_auto() -> None:
+    free = moving(rone2012(), damping=False)
+    released = Scenario(free, (Step(before=2.0, after=0.0),), MotionStudy(0.01, samples=11))
+    for rtol, kept in ((1e-7, 1e-4), (1e-10, 1e-6)):
+        run = simulate(replace(released, solver=Solver("auto", rtol)))
+        assert run.solver is not None
+        assert run.trajectory is not None
+        assert run.solver.method == "explicit"
+        assert np.abs(run.trajectory.ledger_gap).max() < kept * run.trajectory.ledger["kinetic_energy"].max()
+
+
+def test_explicit_method_agrees_with_the_implicit_one_where_both_can() -> None:
+    scenario = Scenario(without_extension(2), (Step(0.0, 1.0),), MotionStudy(0.3, samples=301))
+    found = motion(replace(scenario, solver=Solver("explicit", rtol=1e-9, atol=1e-12)))
+    reference = motion(replace(scenario, solver=Solver("chain", rtol=1e-12, atol=1e-14)))
+    assert tip_error(found, reference) < 1e-9

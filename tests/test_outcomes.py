@@ -40,7 +40,7 @@ def test_step_into_the_hole_limit_says_when_and_where(method: Method) -> None:
         scenario = replace(scenario, scene=without_extension())
     run = simulate(scenario)
     assert run.outcome is Outcome.GEOMETRY_LIMIT
-    assert "segment" in run.message
+    assert "disk" in run.message
     assert "t = 0.0" in run.message
     assert_kept(run, 0.05)
 

@@ -36,18 +36,20 @@ from statics.scene import Scene
 class WholeArm:
     """An arm in the paper's letters, SI units; what a scene leaves out is zero here.
 
-    ``r_h`` and ``last`` (the anchor's disk) hold one number for each cable, ``force`` (n, 2) and ``moment``
-    (n,) the dead loads on the disks; ``relaxation`` is eta / E.
+    ``n`` segments of length ``L0``; every ``step``-th of their ends is a disk. ``m`` and ``I_xx`` hold what
+    stands on each end, shape (n,), so do the dead loads ``force`` (n, 2) and ``moment`` (n,). ``r_h`` and
+    ``last`` (the anchor's disk) hold one number for each cable; ``relaxation`` is eta / E.
     """
 
     n: int
+    step: int
     extends: bool
     L0: float
     EJ: float
     EA: float
     k0: float
-    m: float
-    I_xx: float
+    m: np.ndarray
+    I_xx: np.ndarray
     g: np.ndarray
     relaxation: float
     r_h: np.ndarray
@@ -58,11 +60,11 @@ class WholeArm:
     @property
     def numbers(self) -> list[float]:
         """In the order of ``_Symbols.numbers``."""
-        return [self.L0, self.EJ, self.EA, self.k0, self.m, self.I_xx, *self.g, self.relaxation]
+        return [self.L0, self.EJ, self.EA, self.k0, *self.g, self.relaxation]
 
     def tension_along(self, tension: np.ndarray) -> np.ndarray:
-        """Tension of every cable along every segment, shape (cables, n): zero beyond the anchor."""
-        return np.array(tension)[:, None] * (np.arange(1, self.n + 1) <= self.last[:, None])
+        """Tension of every cable from disk to disk, shape (cables, disks): zero beyond the anchor."""
+        return np.array(tension)[:, None] * (np.arange(1, self.n // self.step + 1) <= self.last[:, None])
 
 
 def whole_arm(scene: Scene) -> WholeArm:
@@ -71,19 +73,25 @@ def whole_arm(scene: Scene) -> WholeArm:
     E = arm.youngs_modulus or 0.0
     cables = arm.cables if Cables in has else ()
     gravity, damping = has.get(Gravity), has.get(MaterialDamping)
-    force, moment = np.zeros((arm.disks, 2)), np.zeros(arm.disks)
+    n, step = arm.disks * arm.subsegments, arm.subsegments
+    force, moment, m, I_xx = np.zeros((n, 2)), np.zeros(n), np.zeros(n), np.zeros(n)
     for load in getattr(has.get(DiskLoads), "loads", ()):
-        force[load.disk - 1] += load.force
-        moment[load.disk - 1] += load.moment
+        force[step * load.disk - 1] += load.force
+        moment[step * load.disk - 1] += load.moment
+    m[step - 1 :: step] = arm.disk_mass or 0.0
+    I_xx[step - 1 :: step] = (arm.disk_inertia or 0.0) if RotaryInertia in has else 0.0
+    core = (arm.core_density or 0.0) * (arm.area or 0.0) * arm.disk_spacing / step
+    m += [core] * (n - 1) + [core / 2]
     return WholeArm(
-        n=arm.disks,
+        n=n,
+        step=step,
         extends=Extension in has,
-        L0=arm.disk_spacing,
+        L0=arm.disk_spacing / step,
         EJ=E * (arm.second_moment or 0.0),
         EA=E * (arm.area or 0.0),
         k0=arm.reference_curvature,
-        m=arm.disk_mass or 0.0,
-        I_xx=(arm.disk_inertia or 0.0) if RotaryInertia in has else 0.0,
+        m=m,
+        I_xx=I_xx,
         g=np.array(gravity.acceleration if isinstance(gravity, Gravity) else (0.0, 0.0)),
         relaxation=damping.retardation_time if isinstance(damping, MaterialDamping) else 0.0,
         r_h=np.array([cable.hole_offset for cable in cables]),
@@ -113,6 +121,14 @@ def stiff_scene(disks: int, **changes: Any) -> Scene:
     return Scene(arm, (Bending(), Gravity(), Cables(), Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)))
 
 
+def spanned_scene(disks: int, subsegments: int = 2) -> Scene:
+    """Several segments from disk to disk, past which the cable runs straight; the core has its own mass."""
+    meshed = {"subsegments": subsegments, "core_density": 7800.0, "cables": ONE_CABLE}
+    arm = Arm.preset("rone2012", disks=disks, reference_curvature=3.0, **meshed)
+    at_rest = (Bending(), Extension(), Gravity(), Cables())
+    return Scene(arm, (*at_rest, Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)))
+
+
 def bare_scene(disks: int) -> Scene:
     """Point masses on an elastic core: no extension, no cables, no gravity, no rotary inertia, no damping."""
     return Scene(Arm.preset("rone2012", disks=disks), (Bending(), Inertia()))
@@ -121,11 +137,11 @@ def bare_scene(disks: int) -> Scene:
 def random_state(scene: Scene, seed: int, bend: float = 1.5) -> tuple[np.ndarray, np.ndarray]:
     """Bends from 0.1 rad to ``bend`` of either sign, 3 % of elongation, 30 rad/s and 0.3 m/s at most."""
     random = np.random.default_rng(seed)
-    shape = scene.arm.disks, len(scene.coordinates)
+    shape = scene.arm.segments, len(scene.coordinates)
     sign = random.choice([-1.0, 1.0], shape[0])
     q, u = random.uniform(-1, 1, shape), random.uniform(-1, 1, shape)
     q[:, 0], u[:, 0] = sign * random.uniform(0.1, bend, shape[0]), 30 * u[:, 0]
-    q[:, 1:], u[:, 1:] = 0.03 * scene.arm.disk_spacing * q[:, 1:], 0.3 * u[:, 1:]
+    q[:, 1:], u[:, 1:] = 0.03 * scene.arm.rest_length * q[:, 1:], 0.3 * u[:, 1:]
     return q, u
 
 
@@ -141,19 +157,22 @@ def relative_error(actual: np.ndarray, expected: np.ndarray) -> float:
 class _Symbols:
     """What the equations of motion are written in."""
 
-    def __init__(self, n: int, extends: bool, cables: int) -> None:
+    def __init__(self, n: int, extends: bool, cables: int, step: int) -> None:
+        self.step = step
         self.phi, self.phi_rate = dynamicsymbols(f"phi1:{n + 1}"), dynamicsymbols(f"omega1:{n + 1}")
         self.e = dynamicsymbols(f"e1:{n + 1}") if extends else ()
         self.e_rate = dynamicsymbols(f"v1:{n + 1}") if extends else ()
-        self.numbers = sp.symbols("L0 EJ EA k0 m I_xx g_x g_y relaxation")
+        self.numbers = sp.symbols("L0 EJ EA k0 g_x g_y relaxation")
+        self.m, self.I_xx = sp.symbols(f"m1:{n + 1}"), sp.symbols(f"I1:{n + 1}")
         self.r_h = sp.symbols(f"r1:{cables + 1}")
-        self.tension = sp.Matrix(cables, n, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
+        self.tension = sp.Matrix(cables, n // step, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
         self.load = sp.Matrix(n, 3, lambda i, a: sp.Symbol(f"load{i}_{a}"))
         self.q, self.u = [*self.phi, *self.e], [*self.phi_rate, *self.e_rate]
 
     @property
     def arguments(self) -> list[Any]:
-        return [self.q, self.u, self.numbers, self.r_h, self.tension.flat(), self.load.flat()]
+        numbers = [self.numbers, self.m, self.I_xx, self.r_h]
+        return [self.q, self.u, *numbers, self.tension.flat(), self.load.flat()]
 
     def rate(self, expression: Any) -> Any:
         return sum(sp.diff(expression, q) * u for q, u in zip(self.q, self.u, strict=True))
@@ -182,10 +201,10 @@ def _place_disks(s: _Symbols) -> tuple[list[ReferenceFrame], list[Point]]:
 
 def _disk_loads(s: _Symbols, frames: list[ReferenceFrame], centers: list[Point]) -> list[Any]:
     """Weights (Eq. 19) and dead loads."""
-    *_, m, _I, g_x, g_y, _relaxation = s.numbers
+    *_, g_x, g_y, _relaxation = s.numbers
     base, loads = frames[0], []
     for i, (frame, center) in enumerate(zip(frames[1:], centers[1:], strict=True)):
-        weight = m * g_x * base.x + m * g_y * base.y
+        weight = s.m[i] * g_x * base.x + s.m[i] * g_y * base.y
         loads.append((center, weight + s.load[i, 0] * base.x + s.load[i, 1] * base.y))
         loads.append((frame, s.load[i, 2] * base.z))
     return loads
@@ -209,13 +228,14 @@ def _axial_forces(s: _Symbols) -> sp.Matrix:
 
 
 def _cable_forces(s: _Symbols, c: int, frames: list[ReferenceFrame], centers: list[Point]) -> list[Any]:
-    """One cable's pulls from hole to hole, on both disks of every segment (Eq. 22-24)."""
+    """One cable's pulls from hole to hole, on both of any two neighbouring disks (Eq. 22-24)."""
     base, loads, holes = frames[0], [], []
-    for frame, center in zip(frames, centers, strict=True):
+    disks = frames[:: s.step]
+    for frame, center in zip(disks, centers[:: s.step], strict=True):
         hole = center.locatenew(f"{center.name}_hole{c}", s.r_h[c] * frame.y)
         hole.v2pt_theory(center, base, frame)
         holes.append(hole)
-    for i, near in enumerate(frames[:-1]):
+    for i, near in enumerate(disks[:-1]):
         way = holes[i + 1].pos_from(holes[i]).express(near)
         pull = s.tension[c, i] * way.normalize()
         loads += [(holes[i + 1], -pull), (holes[i], pull)]
@@ -223,14 +243,13 @@ def _cable_forces(s: _Symbols, c: int, frames: list[ReferenceFrame], centers: li
 
 
 @cache
-def kane_equations(n: int, extends: bool, cables: int) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
+def kane_equations(n: int, extends: bool, cables: int, step: int) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
     """Mass matrix M and forcing f of M u' = f, rates of all bends before those of all elongations."""
-    s = _Symbols(n, extends, cables)
+    s = _Symbols(n, extends, cables, step)
     frames, centers = _place_disks(s)
-    m, I_xx = s.numbers[4:6]
     disks = [
         RigidBody(f"disk{i}", centers[i], frames[i], m, (inertia(frames[i], 0, 0, I_xx), centers[i]))
-        for i in range(1, n + 1)
+        for i, (m, I_xx) in enumerate(zip(s.m, s.I_xx, strict=True), start=1)
     ]
     loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames)]
     for c in range(cables):
@@ -243,22 +262,25 @@ def kane_equations(n: int, extends: bool, cables: int) -> tuple[_Symbols, sp.Mat
 
 
 @cache
-def _kane_function(n: int, extends: bool, cables: int, module: str) -> Callable[..., Any]:
-    s, mass, forcing = kane_equations(n, extends, cables)
+def _kane_function(
+    n: int, extends: bool, cables: int, step: int, module: str
+) -> Callable[..., tuple[Any, Any]]:
+    s, mass, forcing = kane_equations(n, extends, cables, step)
     return sp.lambdify(s.arguments, (mass, forcing), modules=module, cse=True)
 
 
 def _arguments(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> list[np.ndarray]:
     load = np.column_stack([arm.force, arm.moment])
-    tensions = arm.tension_along(tension)
-    return [q.T.ravel(), u.T.ravel(), np.array(arm.numbers), arm.r_h, tensions.ravel(), load.ravel()]
+    tensions, numbers = arm.tension_along(tension), [np.array(arm.numbers), arm.m, arm.I_xx, arm.r_h]
+    return [q.T.ravel(), u.T.ravel(), *numbers, tensions.ravel(), load.ravel()]
 
 
 def mass_and_forcing(
     arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """M, shape (q.size, q.size), and f, shape (q.size,), at one state."""
-    mass, forcing = _kane_function(arm.n, arm.extends, len(arm.r_h), "numpy")(*_arguments(arm, q, u, tension))
+    equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, "numpy")
+    mass, forcing = equations(*_arguments(arm, q, u, tension))
     return mass, forcing[:, 0]
 
 
@@ -273,7 +295,8 @@ def precise_accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: 
     bent[q[:, 0] == 0, 0] = "1e-40"
     with mpmath.workdps(200):
         numbers = [[mpmath.mpf(value) for value in values] for values in _arguments(arm, bent, u, tension)]
-        solution = mpmath.lu_solve(*_kane_function(arm.n, arm.extends, len(arm.r_h), "mpmath")(*numbers))
+        equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, "mpmath")
+        solution = mpmath.lu_solve(*equations(*numbers))
         return np.array(solution, dtype=float).reshape(-1, arm.n).T
 
 
@@ -295,9 +318,9 @@ def poses(arm: WholeArm, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 
 
 def cable_lengths(arm: WholeArm, q: np.ndarray) -> np.ndarray:
-    """Hole-to-hole lengths from the holes' positions, shape (cables, n). Rone 2012, Eq. 22-23."""
-    x, y, theta = (np.concatenate([[0], values]) for values in poses(arm, q))
-    lengths = np.empty((len(arm.r_h), arm.n), dtype=q.dtype)
+    """Hole-to-hole lengths from the holes' positions, shape (cables, disks). Rone 2012, Eq. 22-23."""
+    x, y, theta = (np.concatenate([[0], values])[:: arm.step] for values in poses(arm, q))
+    lengths = np.empty((len(arm.r_h), arm.n // arm.step), dtype=q.dtype)
     for c, r_h in enumerate(arm.r_h):
         across, up = np.diff(x - r_h * np.sin(theta)), np.diff(y + r_h * np.cos(theta))
         lengths[c] = np.sqrt(across**2 + up**2)
@@ -311,9 +334,9 @@ def elastic_energy(arm: WholeArm, q: np.ndarray) -> Any:
 
 
 def gravity_energy(arm: WholeArm, q: np.ndarray) -> Any:
-    """Of the disks, zero at the base, J."""
+    """Of the masses, zero at the base, J."""
     x, y, _ = poses(arm, q)
-    return -arm.m * (arm.g[0] * np.sum(x) + arm.g[1] * np.sum(y))
+    return -(arm.g[0] * arm.m @ x + arm.g[1] * arm.m @ y)
 
 
 def load_energy(arm: WholeArm, q: np.ndarray) -> Any:

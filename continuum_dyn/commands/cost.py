@@ -1,6 +1,8 @@
 """``continuum-dyn cost``: what accuracy costs in time."""
 
 import csv
+from dataclasses import asdict
+from math import log2
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,7 +11,9 @@ import typer
 from continuum_dyn.commands.show import length, make_folder
 
 if TYPE_CHECKING:
-    from continuum_dyn.cost import Cost
+    from collections.abc import Sequence
+
+    from continuum_dyn.cost import Cost, MeshPrice
 
 
 def cost(
@@ -18,8 +22,9 @@ def cost(
 ) -> None:
     """Show what accuracy costs in time.
 
-    Runs the motion by every method over a range of tolerances and without each of its effects; prints
-    error, time and work, and the cheapest way to each error. Writes DIR/NAME_cost.csv, .h5 and .png.
+    Runs the motion by every method over a range of tolerances, on finer and finer meshes, and without each
+    of its effects; prints error, time and work, and the cheapest way to each error. Writes DIR/NAME_cost.csv,
+    NAME_cost_mesh.csv, NAME_cost.h5 and NAME_cost.png.
     """
     from continuum_dyn.cost import measure
     from continuum_dyn.record import write_cost
@@ -31,10 +36,11 @@ def cost(
     measured = _with_status(scenario.title, lambda progress: measure(scenario, progress))
     stem = out / f"{file.stem}_cost"
     _write_csv(measured, stem.with_suffix(".csv"))
+    _write_mesh_csv(measured, out / f"{file.stem}_cost_mesh.csv")
     write_cost(measured, stem.with_suffix(".h5"))
     plots.cost(measured).savefig(stem.with_suffix(".png"), dpi=130)
     _show(measured)
-    typer.echo(f"written: {stem}.csv, .h5, .png")
+    typer.echo(f"written: {stem}.csv, _mesh.csv, .h5, .png")
 
 
 def _with_status(title: str, work: Any) -> Any:
@@ -55,40 +61,92 @@ def _write_csv(measured: "Cost", path: Path) -> None:
             writer.writerow([p.method, p.rtol, p.error, p.seconds, p.steps, p.segment_evaluations])
 
 
+def _write_mesh_csv(measured: "Cost", path: Path) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        if measured.meshes:
+            writer.writerow(asdict(measured.meshes[0]))
+        writer.writerows(asdict(mesh).values() for mesh in measured.meshes)
+
+
 def _show(measured: "Cost") -> None:
     from rich.console import Console
-    from rich.table import Table
 
     console = Console(highlight=False)
+    console.print(_price_table(measured))
+    console.print(f"Errors against two references {length(measured.reference_gap)} apart; work in segment")
+    console.print("evaluations.\n")
+    if measured.meshes:
+        console.print(_mesh_table(measured.meshes))
+        console.print("At rest under the last tensions, against the exact rod. From two: extrapolated")
+        console.print("from this mesh and the one before.\n")
+    else:
+        console.print(f"No errors of meshes: {measured.no_meshes}\n")
+    console.print(_effect_table(measured))
+    console.print(_frontier_table(measured))
 
-    def table(title: str, *columns: str) -> Any:
-        made = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="dim")
-        for number, column in enumerate(columns):
-            made.add_column(column, justify="left" if number == 0 else "right")
-        return made
 
-    prices = table(measured.scenario.title, "method", "rtol", "tip error", "time", "steps", "work")
+def _table(title: str, *columns: str) -> Any:
+    from rich.table import Table
+
+    made = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="dim")
+    for number, column in enumerate(columns):
+        made.add_column(column, justify="left" if number == 0 else "right")
+    return made
+
+
+def _price_table(measured: "Cost") -> Any:
+    prices = _table(measured.scenario.title, "method", "rtol", "tip error", "time", "steps", "work")
     for p in measured.prices:
         row = (length(p.error), f"{p.seconds * 1e3:.3g} ms", str(p.steps), str(p.segment_evaluations))
         prices.add_row(p.method, f"{p.rtol:.0e}", *row)
     for method, rtol in measured.over_budget.items():
         prices.add_row(method, f"{rtol:.0e}", "", "given up")
-    console.print(prices)
-    console.print(f"Errors against two references {length(measured.reference_gap)} apart; work in segment")
-    console.print("evaluations.\n")
-    effects = table("Without an effect", "left out", "tip moves by", "time", "fastest rate")
+    return prices
+
+
+def _mesh_table(meshes: "Sequence[MeshPrice]") -> Any:
+    columns = ("subsegments", "tip", "order", "angle", "order", "from two", "order", "statics", "motion")
+    table = _table("Meshes", *columns)
+    for before, mesh in zip((None, *meshes), meshes, strict=False):
+        names = ("tip_error", "angle_error", "limit_error")
+        errors = [getattr(mesh, name) for name in names]
+        orders = [
+            _order(getattr(before, name, None), error) for name, error in zip(names, errors, strict=True)
+        ]
+        moved = "" if mesh.motion_seconds is None else f"{mesh.motion_seconds * 1e3:.3g} ms"
+        table.add_row(
+            str(mesh.subsegments),
+            *(length(errors[0]), orders[0]),
+            *(f"{errors[1]:.1e}", orders[1]),
+            *("" if errors[2] is None else length(errors[2]), orders[2]),
+            *(f"{mesh.seconds * 1e6:.3g} us", moved),
+        )
+    return table
+
+
+def _order(before: float | None, error: float | None) -> str:
+    """The power of the number of segments that the error fell with, from the mesh half as fine."""
+    return f"{log2(before / error):.1f}" if before and error else ""
+
+
+def _effect_table(measured: "Cost") -> Any:
+    effects = _table("Without an effect", "left out", "tip moves by", "time", "fastest rate")
     effects.add_row("(nothing)", "", "1", f"{measured.fastest_rate:.3g} 1/s")
     for e in measured.effects:
         if e.tip_shift is None:
             effects.add_row(e.name, "no such motion without it")
         else:
             effects.add_row(e.name, length(e.tip_shift), f"{e.time_ratio:.2g}", f"{e.fastest_rate:.3g} 1/s")
-    console.print(effects)
-    frontier = table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
+    return effects
+
+
+def _frontier_table(measured: "Cost") -> Any:
+    frontier = _table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
     for target, p in measured.frontier().items():
         if p is None:
             frontier.add_row(length(target), "not reached")
         else:
             time = f"{p.seconds * 1e3:.3g} ms"
             frontier.add_row(length(target), p.method, f"{p.rtol:.0e}", time, str(p.segment_evaluations))
-    console.print(frontier)
+    return frontier

@@ -30,7 +30,7 @@ def explain(
     typer.echo(f"{scenario.title}\n")
     per_segment = len(scene.coordinates)
     typer.echo(
-        f"{scene.arm.disks} segments, {per_segment * scene.arm.disks} coordinates: "
+        f"{scene.arm.segments} segments, {per_segment * scene.arm.segments} coordinates: "
         f"{' and '.join(scene.coordinates)} of each segment.\n"
     )
     typer.echo("Effects in play")
@@ -42,12 +42,18 @@ def explain(
 
 
 def _print_method(scenario: Any) -> None:
+    from continuum_dyn.dynamics import Dynamics
     from continuum_dyn.integrators import choose
+    from continuum_dyn.profiles import spans
     from continuum_dyn.study import MotionStudy
+    from statics.equilibria import StaticSolver
 
-    if isinstance(scenario.study, MotionStudy) and scenario.solver.method == "auto":
-        choice = choose(scenario.scene)
-        typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
+    if not isinstance(scenario.study, MotionStudy) or scenario.solver.method != "auto":
+        return
+    dynamics = Dynamics(scenario.scene)
+    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_tension).coordinates)
+    choice = choose(dynamics, start, spans(scenario.profiles, scenario.study.duration)[0])
+    typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 
 def _print_equations(scene: Any, latex: bool) -> None:
@@ -60,8 +66,14 @@ def _print_equations(scene: Any, latex: bool) -> None:
     typer.echo("\nOne segment: its far end seen from its near disk (Eq. 11)")
     for name, value in zip("xy", forces.segment.displacement, strict=True):
         typer.echo(write(name, value, used))
-    for place, at in (("segment", forces.segment), ("disk", forces.disk)):
+    for place, at in (
+        ("segment", forces.segment),
+        ("span", forces.span or forces.segment),
+        ("disk", forces.disk),
+    ):
         groups = collect(scene.effects, place, at)
+        if not groups:
+            continue
         typer.echo(f"\nOne {place}: loads P and the displacements r they work along (Eq. 1)")
         for effect, pairs in groups:
             typer.echo(f"  {effect.name}")

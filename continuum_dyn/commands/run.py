@@ -78,12 +78,16 @@ def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[st
 
 def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: float) -> dict[str, Any]:
     """What ``--json`` prints; ``tip`` is x, y (m), theta (rad), times are in s, ``static_gap`` in m."""
+    arm = result.scenario.scene.arm
     record: dict[str, Any] = {
         "scenario": str(path),
         "title": result.scenario.title,
         "outcome": str(result.outcome),
         "message": result.message,
         "tip": result.tip,
+        "segments": arm.segments,
+        "tip_error": result.tip_error,
+        "mesh_error": None if result.mesh is None else result.mesh.estimate,
         "solve_time": result.solve_time,
         "wall_time": wall_time,
         "log": str(log),
@@ -92,7 +96,6 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
     if result.trajectory is not None:
         record["method"] = result.solver.method if result.solver else None
         record["static_gap"] = result.static_gap
-        record["tip_error"] = result.tip_error
         record["ledger_gap"] = (
             float(abs(result.trajectory.ledger_gap).max()) if result.trajectory.time.size else None
         )
@@ -149,6 +152,8 @@ def _show(report: dict[str, Any]) -> None:
         table.add_row("gap to static", f"{length(result.static_gap)} from the final equilibrium")
     if result.trajectory is not None:
         _add_motion(table, result)
+    if result.tip_error is not None:
+        table.add_row("accuracy", _accuracy(result, result.tip_error))
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     table.add_row("log", f"{report['log']}  (play it: continuum-dyn play {report['log']})")
     console = Console(highlight=False)
@@ -166,8 +171,6 @@ def _add_motion(table: Any, result: "Run") -> None:
     assert solver is not None
     counters = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in trajectory.counters.items())
     table.add_row("solver", f"{solver.method}: {counters}")
-    if result.tip_error is not None:
-        table.add_row("accuracy", f"tip within {length(result.tip_error)}, checked; rtol {solver.rtol:.1e}")
     energy = max(
         float(abs(column).max(initial=0.0))
         for name, column in trajectory.ledger.items()
@@ -176,6 +179,20 @@ def _add_motion(table: Any, result: "Run") -> None:
     if energy > 0.0:
         gap = float(abs(trajectory.ledger_gap).max())
         table.add_row("power ledger", f"closes to {gap / energy:.1g} of the largest energy in it")
+
+
+def _accuracy(result: "Run", error: float) -> str:
+    """What was checked, and what it took."""
+    took = [] if result.solver is None else [f"rtol {result.solver.rtol:.1e}"]
+    if result.mesh is not None:
+        found = result.mesh
+        meshes = (
+            f"from {found.subsegments} and {2 * found.subsegments}"
+            if found.extrapolated
+            else f"= {found.subsegments}"
+        )
+        took.append(f"subsegments {meshes}, to which {length(found.estimate)} is due")
+    return f"tip within {length(error)}, checked; {', '.join(took)}"
 
 
 def _ramp_table(result: "Run", points: list[Any]) -> Any:

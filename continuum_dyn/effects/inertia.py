@@ -1,4 +1,4 @@
-"""Inertia of the disks against acceleration of their centres."""
+"""Inertia of the masses against acceleration."""
 
 from typing import Any, ClassVar
 
@@ -11,7 +11,7 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class Inertia:
-    """F = -m a along each disk's position (d'Alembert)."""
+    """F = -m a along each node's position (d'Alembert)."""
 
     name: ClassVar[str] = "inertia"
     place: ClassVar[Place] = "disk"
@@ -23,9 +23,9 @@ class Inertia:
     source: ClassVar[str] = "Kane and Levinson 1985, generalized inertia forces"
 
     def pairs(self, at: Any) -> list[Pair]:
-        """One pair: inertia force, position of the disk."""
+        """One pair: inertia force, position of the node."""
         a_x, a_y = at.acceleration
-        return [Pair((-at.disk_mass * a_x, -at.disk_mass * a_y), at.position)]
+        return [Pair((-at.node_mass * a_x, -at.node_mass * a_y), at.position)]
 
     def columns(self, arm: Arm) -> dict[str, float]:
         """None of its own."""

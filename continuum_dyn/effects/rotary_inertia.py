@@ -24,7 +24,7 @@ class RotaryInertia:
 
     def pairs(self, at: Any) -> list[Pair]:
         """One pair: inertia moment, angle of the disk."""
-        return [Pair(-at.disk_inertia * at.angular_acceleration, at.angle)]
+        return [Pair(-at.node_inertia * at.angular_acceleration, at.angle)]
 
     def columns(self, arm: Arm) -> dict[str, float]:
         """None of its own."""

@@ -3,16 +3,21 @@
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 
 from continuum_dyn.integrators.chain_solver import ChainSolver
-from continuum_dyn.integrators.choice import Choice, choose
+from continuum_dyn.integrators.choice import Choice, check, choose, rates
 from continuum_dyn.integrators.guard import Budget, Guard, Monitor, interruptible
+from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, Tableau
 
 IMPLICIT = ("Radau", "BDF", "LSODA")
 """SciPy's methods that use the Jacobian."""
+
+TABLEAUX: dict[str, Tableau] = {"chain": ESDIRK5, "explicit": DOPRI8}
+"""Methods on the chain itself, with errors in metres."""
 
 METHODS: dict[str, type[OdeSolver]] = {
     name: type(f"Guarded{method.__name__}", (Guard, method), {})
     for name, method in {
         "chain": ChainSolver,
+        "explicit": ChainSolver,
         **{method.__name__: method for method in (RK23, RK45, DOP853, Radau, BDF, LSODA)},
     }.items()
 }
@@ -20,11 +25,14 @@ METHODS: dict[str, type[OdeSolver]] = {
 __all__ = [
     "IMPLICIT",
     "METHODS",
+    "TABLEAUX",
     "Budget",
     "ChainSolver",
     "Choice",
     "Guard",
     "Monitor",
+    "check",
     "choose",
     "interruptible",
+    "rates",
 ]

@@ -7,7 +7,7 @@ from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators.esdirk import TOO_SMALL
-from continuum_dyn.integrators.tableau import ESDIRK5, Tableau
+from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.profiles import Span
 
 BATCH = 256
@@ -23,7 +23,8 @@ class ChainSolver(OdeSolver):
     Options: ``dynamics`` and ``span``, whose right-hand side this is (``fun`` is not called); ``tolerance``,
     the largest displacement (m) of any disk by the error of one step; ``first_step`` (s), at most;
     ``tableau``. ``internal_steps`` and ``internal_rejections`` count those of the last call, which takes no
-    more than ``steps_left``.
+    more than ``steps_left``. Where nodes carry no mass the start's accelerations are not known; a first step
+    by ``SDIRK4``, which does not ask for them, ends in some that fit.
     """
 
     steps_left = BATCH
@@ -45,10 +46,9 @@ class ChainSolver(OdeSolver):
         super().__init__(fun, t0, y0, t_bound, vectorized)
         self.kernel, segments, disks = dynamics.implicit
         self.arm = (span.pieces, segments, disks)
-        self.method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor)
-        self.order = tableau.order
+        self.tableau = tableau
         self.tolerance = tolerance
-        shape = (BATCH + 1, dynamics.scene.arm.disks, dynamics.dofs)
+        shape = (BATCH + 1, dynamics.scene.arm.segments, dynamics.dofs)
         self.records = (
             np.empty(shape[0]),
             np.empty((shape[0], y0.size)),
@@ -56,22 +56,27 @@ class ChainSolver(OdeSolver):
             np.empty((shape[0], 2)),
         )
         push = self.kernel.start_records(t0, np.asarray(y0, dtype=float), self.arm, self.records)
-        resolved = np.sqrt(2.0 * FIRST_PART * tolerance / push) if push > 0.0 else np.inf
-        self.next_step = min(first_step, resolved)
+        self.next_step = first_step
+        self.knows_acceleration = not dynamics.scene.arm.massless_nodes
+        if not self.knows_acceleration:
+            self.records[2][0] = 0.0
+        elif push > 0.0:
+            self.next_step = min(first_step, np.sqrt(2.0 * FIRST_PART * tolerance / push))
         self.rate = 0.1
         self.internal_steps = self.internal_rejections = 0
 
     def _step_impl(self) -> tuple[bool, str | None]:
         for column in self.records:
             column[0] = column[self.internal_steps]
-        rows = min(BATCH, self.steps_left) + 1
+        tableau = self.tableau if self.knows_acceleration else SDIRK4
+        rows = (min(BATCH, self.steps_left) if self.knows_acceleration else 1) + 1
         ended, taken, self.next_step, self.rate, rejected, iterations = self.kernel.advance(
             self.t_bound,
             self.next_step,
             self.rate,
             tuple(column[:rows] for column in self.records),
-            self.method,
-            self.order,
+            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor),
+            tableau.order,
             self.tolerance,
             self.arm,
         )
@@ -82,6 +87,7 @@ class ChainSolver(OdeSolver):
         if taken == 0:
             reason = "step size fell below rounding" if ended == TOO_SMALL else "no step was possible"
             return False, f"{reason} ({self.next_step:.3g} s)"
+        self.knows_acceleration = True
         self.t, self.y = float(self.records[0][taken]), self.records[1][taken].copy()
         return True, None
 

@@ -1,17 +1,22 @@
-"""The diagonally implicit Runge-Kutta method of the chain, as numbers.
+"""The Runge-Kutta methods of the chain, as numbers.
 
-Explicit first stage, one diagonal element, stiffly accurate, L-stable, second stage order.
+The first stage is the start of a step and the last one its end. The implicit ones have one diagonal element
+and are L-stable; an explicit one is the same with a zero there.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.integrate import DOP853
 
 
 @dataclass(frozen=True)
 class Tableau:
-    """Butcher's coefficients; ``error_weights`` is the difference to the embedded method's weights."""
+    """Butcher's coefficients; ``error_weights`` is the difference to the embedded method's weights.
+
+    The error of a step goes with its size to the power ``order``.
+    """
 
     name: str
     source: str
@@ -28,11 +33,12 @@ class Tableau:
     def predictor(self) -> np.ndarray:
         """Weights that extrapolate a stage's acceleration from those before it, shape (stages, stages).
 
-        Lagrange's polynomial through the last three stages.
+        Lagrange's polynomial through the last three stages that the method itself looks at.
         """
         weights = np.zeros_like(self.a)
+        first = 0 if self.a[:, 0].any() else 1
         for i in range(1, len(self.c)):
-            known = range(max(0, i - 3), i)
+            known = range(max(first, i - 3), i)
             for j in known:
                 others = [k for k in known if k != j]
                 weights[i, j] = np.prod([(self.c[i] - self.c[k]) / (self.c[j] - self.c[k]) for k in others])
@@ -104,3 +110,40 @@ ESDIRK5 = Tableau(
     ),
     error_weights=np.array([*_WEIGHTS, 41 / 200]) - np.array(_EMBEDDED),
 )
+SDIRK4 = Tableau(
+    name="SDIRK4(3)",
+    source="Hairer and Wanner 1996, Solving ODEs II, table IV.6.5; here its five stages follow an unused one",
+    order=4,
+    a=_lower(
+        [
+            [],
+            [0.0],
+            [0.0, 1 / 2],
+            [0.0, 17 / 50, -1 / 25],
+            [0.0, 371 / 1360, -137 / 2720, 15 / 544],
+            [0.0, 25 / 24, -49 / 48, 125 / 16, -85 / 12],
+        ],
+        1 / 4,
+    ),
+    error_weights=np.array([0.0, 25 / 24, -49 / 48, 125 / 16, -85 / 12, 1 / 4])
+    - np.array([0.0, 59 / 48, -17 / 96, 225 / 32, -85 / 12, 0.0]),
+)
+"""It needs no acceleration to start from."""
+
+
+def _ends_in_weights(a: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """An explicit method's coefficients with the end of the step as its last stage."""
+    count = len(weights)
+    whole = np.zeros((count + 1, count + 1))
+    whole[:count, :count], whole[count, :count] = a[:count, :count], weights
+    return whole
+
+
+DOPRI8 = Tableau(
+    name="DOP853",
+    source="Hairer, Norsett and Wanner 1993, Solving ODEs I, sec. II.5; the coefficients are SciPy's",
+    order=6,
+    a=_ends_in_weights(DOP853.A, DOP853.B),
+    error_weights=DOP853.E5,
+)
+"""Of order eight; its error estimate, and so the order that steps are chosen by, is that of order five."""

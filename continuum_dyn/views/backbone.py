@@ -14,15 +14,17 @@ def poses(columns: Mapping[str, np.ndarray], rows: np.ndarray) -> tuple[np.ndarr
 
 
 def backbone(columns: Mapping[str, np.ndarray], rows: np.ndarray, points: int) -> np.ndarray:
-    """Points along the core, base first, ``points`` for each segment; shape (rows, points x disks + 1, 2), m.
+    """Points along the core, base first, ``points`` for each segment.
 
-    Each segment is a circular arc: a chord at half its angle (Rone 2012, Eq. 11).
+    Shape (rows, points x segments + 1, 2), m. Each segment is a circular arc: a chord at half its angle
+    (Rone 2012, Eq. 11).
     """
-    length, theta = columns["length"][rows], columns["disk_theta"][rows]
-    start, _ = poses(columns, rows)
+    length = columns["length"][rows]
+    bend = columns["curvature"][rows] * length
     along = np.arange(1, points + 1) / points
-    half = 0.5 * (columns["curvature"][rows] * length)[..., None] * along
+    half = 0.5 * bend[..., None] * along
+    angle = (np.cumsum(bend, axis=1) - bend)[..., None] + half
     chord = length[..., None] * along * np.sinc(half / np.pi)
-    angle = np.pad(theta, ((0, 0), (1, 0)))[:, :-1, None] + half
-    arcs = start[:, :-1, None] + chord[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    return np.concatenate([start[:, :1], arcs.reshape(len(rows), -1, 2)], axis=1)
+    arcs = chord[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    arcs[:, 1:] += np.cumsum(arcs[:, :-1, -1], axis=1)[:, :, None]
+    return np.pad(arcs.reshape(len(rows), -1, 2), ((0, 0), (1, 0), (0, 0)))

@@ -1,5 +1,6 @@
 """Figures made from logs."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -29,9 +30,10 @@ def step_response(log: Log) -> Figure:
 
 
 def cost(measured: Cost) -> Figure:
-    """Tip error against time, and against machine-independent work, for every method."""
-    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
-    by_time, by_work = figure.subplots(1, 2, sharey=True)
+    """Tip error against time and work for every method, and against time for every mesh."""
+    figure = Figure(figsize=(12.0, 4.4), layout="constrained")
+    by_time, by_work, by_mesh = figure.subplots(1, 3, width_ratios=[1.0, 1.0, 0.9])
+    by_work.sharey(by_time)
     methods = list(dict.fromkeys(price.method for price in measured.prices))
     for method, (line, marker) in zip(methods, STYLES, strict=False):
         prices = [price for price in measured.prices if price.method == method]
@@ -45,22 +47,41 @@ def cost(measured: Cost) -> Figure:
         }
         by_time.loglog([1e3 * price.seconds for price in prices], errors, **look)
         by_work.loglog([price.segment_evaluations for price in prices], errors, **look)
-    by_time.set(xlabel="time (ms)", ylabel="largest tip error (m)")
-    by_work.set(xlabel="segment evaluations")
+    by_time.set(xlabel="time (ms)", ylabel="largest tip error (m)", title="Methods, by time")
+    by_work.set(xlabel="segment evaluations", title="Methods, by work")
     by_work.legend()
-    for axes in (by_time, by_work):
+    _draw_meshes(by_mesh, measured)
+    for axes in (by_time, by_work, by_mesh):
         axes.grid(visible=True, which="major", lw=0.4, color="0.8")
     figure.suptitle(f"{measured.scenario.title}: what accuracy costs")
     return figure
 
 
+def _draw_meshes(axes: Any, measured: Cost) -> None:
+    """The tip at rest against the exact rod's, on one mesh and extrapolated from two."""
+    axes.set(xlabel="time of an equilibrium (us)", ylabel="tip error at rest (m)", title="Meshes")
+    if not measured.meshes:
+        axes.text(0.5, 0.5, "no exact rod", ha="center", transform=axes.transAxes)
+        return
+    times = [1e6 * mesh.seconds for mesh in measured.meshes]
+    plain = [mesh.tip_error for mesh in measured.meshes]
+    axes.loglog(times, plain, "-o", color="k", ms=5, lw=1.6, label="one mesh")
+    for mesh, place in zip(measured.meshes, zip(times, plain, strict=True), strict=True):
+        axes.annotate(str(mesh.subsegments), place, xytext=(5, 4), textcoords="offset points", fontsize=8)
+    both = [before + after for before, after in pairwise(times)]
+    limits = [mesh.limit_error or 0.0 for mesh in measured.meshes[1:]]
+    axes.loglog(both, limits, "--s", color="C0", ms=5, lw=1.2, label="from two")
+    axes.legend()
+
+
 def _draw_shapes(axes: Any, log: Log) -> None:
     motion, rest = log.trajectory, log.equilibria
+    segments_to_disk = motion["length"].shape[1] // motion["disk_x"].shape[1]
     for rank, sample in enumerate(shown := _on_the_way_up(motion["disk_y"][:, -1])):
         points = 1e3 * backbone(motion, np.array([sample]), ARC_POINTS)[0]
         grey = str(0.75 - 0.6 * rank / (len(shown) - 1))
         axes.plot(*points.T, color=grey, lw=1.6)
-        axes.plot(*points[::ARC_POINTS].T, "o", color=grey, ms=3.5)
+        axes.plot(*points[:: ARC_POINTS * segments_to_disk].T, "o", color=grey, ms=3.5)
         label = f"{motion['time'][sample] * 1e3:.0f} ms"
         axes.annotate(label, points[-1], xytext=(7, 0), textcoords="offset points", fontsize=8, va="center")
     final = 1e3 * backbone(rest, np.array([-1]), ARC_POINTS)[0]

@@ -235,10 +235,10 @@ def _ends_at_rest(log: Log) -> bool:
 def _plots(log: Log, story: Story) -> dict[str, Plot]:
     """What is plotted, by entity; what the log does not know is left out."""
     columns = story.columns
-    disks = columns["disk_x"].shape[1]
+    disks, segments = columns["disk_x"].shape[1], columns["curvature"].shape[1]
     tension = dict(zip(log.cables, columns["tension"].T, strict=True))
     tip_x, tip_y = ({f"disk {disks}": columns[name][:, -1]} for name in ("disk_x", "disk_y"))
-    curvature = {f"segment {n + 1}": columns["curvature"][:, n] for n in _spread(disks, MOST_SERIES)}
+    curvature = {f"segment {n + 1}": columns["curvature"][:, n] for n in _spread(segments, MOST_SERIES)}
     plots = {
         "tension": Plot(QUANTITIES["tension"].label, tension),
         "tip_x": Plot(f"tip: {QUANTITIES['disk_x'].label}", tip_x),

@@ -15,7 +15,7 @@ class Cables:
     """F = -tau along the hole-to-hole length l, for each of the arm's cables, up to its anchor."""
 
     name: ClassVar[str] = "cables"
-    place: ClassVar[Place] = "segment"
+    place: ClassVar[Place] = "span"
     account: ClassVar[Account] = "input_power"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ()

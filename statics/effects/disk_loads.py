@@ -45,7 +45,7 @@ class DiskLoads:
         ]
 
     def columns(self, arm: Arm) -> dict[str, np.ndarray]:
-        """Sums over the loads of each disk, shape (disks,).
+        """Sums over the loads of each disk, shape (segments,): zero on nodes between disks.
 
         Raises ``InputError`` for a disk beyond the arm.
         """
@@ -56,4 +56,4 @@ class DiskLoads:
                     f"load on disk {load.disk}: beyond the arm. Allowed: disks 1 to {arm.disks}."
                 )
             total[:, load.disk - 1] += (*load.force, load.moment)
-        return dict(zip(self.quantities, total, strict=True))
+        return dict(zip(self.quantities, map(arm.at_disks, total), strict=True))

@@ -7,7 +7,7 @@ import numpy as np
 
 from statics.arm import Arm
 
-Place = Literal["segment", "disk"]
+Place = Literal["segment", "span", "disk"]
 Account = Literal["elastic_energy", "gravity_energy", "kinetic_energy", "input_power", "dissipated_power"]
 
 
@@ -21,11 +21,11 @@ class Pair(NamedTuple):
 class Effect(Protocol):
     """A frozen dataclass of parameters with one verb: ``pairs``.
 
-    ``name`` is its key in scenario files; ``place`` says where the pairs stand (on each segment or on
-    each disk); ``account`` in which line of the power ledger its work is booked; ``acts_at_rest`` is
-    False for what exists in motion only; ``coordinates`` are those that it adds to a segment;
-    ``arm_quantities`` are the numbers of the arm that it needs, ``quantities`` its own (glossary
-    names); ``source`` is where it comes from.
+    ``name`` is its key in scenario files; ``place`` says where the pairs stand (on each segment, on
+    each span from disk to disk, or on each disk and other node); ``account`` in which line of the power
+    ledger its work is booked; ``acts_at_rest`` is False for what exists in motion only; ``coordinates``
+    are those that it adds to a segment; ``arm_quantities`` are the numbers of the arm that it needs,
+    ``quantities`` its own (glossary names); ``source`` is where it comes from.
     """
 
     name: ClassVar[str]

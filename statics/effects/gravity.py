@@ -1,4 +1,4 @@
-"""Weight of the disks, in any direction of the plane."""
+"""Weight of the masses, in any direction of the plane."""
 
 from typing import Any, ClassVar
 
@@ -11,7 +11,7 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class Gravity:
-    """F = m g along each disk's position; ``acceleration`` is g, m/s^2."""
+    """F = m g along each node's position; ``acceleration`` is g, m/s^2."""
 
     acceleration: Vector = (0.0, -9.81)
 
@@ -25,8 +25,8 @@ class Gravity:
     source: ClassVar[str] = "Rone 2012, Eq. 19"
 
     def pairs(self, at: Any) -> list[Pair]:
-        """One pair: weight, position of the disk."""
-        return [Pair((at.disk_mass * at.gravity_x, at.disk_mass * at.gravity_y), at.position)]
+        """One pair: weight, position of the node."""
+        return [Pair((at.node_mass * at.gravity_x, at.node_mass * at.gravity_y), at.position)]
 
     def columns(self, arm: Arm) -> dict[str, float]:
         """Components of g."""
