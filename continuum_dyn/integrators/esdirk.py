@@ -47,6 +47,15 @@ def displacement(chain: np.ndarray, change: np.ndarray) -> float:
     return math.sqrt(carried[0])
 
 
+def add_weighted(h: float, weights: np.ndarray, parts: np.ndarray, count: int, total: np.ndarray) -> None:
+    """Add h times the weighted sum of the first ``count`` rows of ``parts``, (count, size), to ``total``."""
+    for j in range(count):
+        factor = h * weights[j]
+        if factor != 0.0:
+            for m in range(total.size):
+                total[m] += factor * parts[j, m]
+
+
 def solve_stage(
     known_q: np.ndarray,
     known_u: np.ndarray,
@@ -122,23 +131,18 @@ def step_once(
     stage_q[0] = y[:size].reshape((n, dofs))
     stage_u[0] = y[size : 2 * size].reshape((n, dofs))
     tension = np.empty(arm[0].shape[0])
-    known_q, known_u, error = work[3], work[4], work[5]
+    known_q, known_u, error = work[3].ravel(), work[4].ravel(), work[5].ravel()
+    flat_u, flat_w = stage_u.reshape((count, size)), stage_w.reshape((count, size))
     iterations = 0
     for s in range(1, count):
-        for i in range(n):
-            for k in range(dofs):
-                q_sum, u_sum, w_sum = 0.0, 0.0, 0.0
-                for j in range(s):
-                    q_sum += a[s, j] * stage_u[j, i, k]
-                    u_sum += a[s, j] * stage_w[j, i, k]
-                    w_sum += predictor[s, j] * stage_w[j, i, k]
-                known_q[i, k] = stage_q[0, i, k] + h * q_sum
-                known_u[i, k] = stage_u[0, i, k] + h * u_sum
-                stage_w[s, i, k] = w_sum
+        known_q[:], known_u[:], flat_w[s] = y[:size], y[size : 2 * size], 0.0
+        add_weighted(h, a[s], flat_u, s, known_q)
+        add_weighted(h, a[s], flat_w, s, known_u)
+        add_weighted(1.0, predictor[s], flat_w, s, flat_w[s])
         tension_at(t + c[s] * h, arm[0], tension)
         took, rate, next_power[0], next_power[1] = solve_stage(
-            known_q,
-            known_u,
+            work[3],
+            work[4],
             a[s, s] * h,
             STAGE_PART * tolerance,
             rate,
@@ -154,12 +158,9 @@ def step_once(
     last = count - 1
     next_y[:size] = stage_q[last].ravel()
     next_y[size : 2 * size] = stage_u[last].ravel()
-    for i in range(n):
-        for k in range(dofs):
-            error[i, k] = 0.0
-            for s in range(count):
-                error[i, k] += h * error_weights[s] * stage_u[s, i, k]
-    return displacement(chain, error), rate, iterations
+    error[:] = 0.0
+    add_weighted(h, error_weights, flat_u, count, error)
+    return displacement(chain, work[5]), rate, iterations
 
 
 def advance(
@@ -304,21 +305,21 @@ def interpolate(at: np.ndarray, records: "Records", found: np.ndarray) -> None:
         end_rate_slope = -12.0 * s2 + 28.0 * s3 - 15.0 * s2 * s2
         start_push_slope = s - 4.5 * s2 + 6.0 * s3 - 2.5 * s2 * s2
         end_push_slope = 1.5 * s2 - 4.0 * s3 + 2.5 * s2 * s2
+        w0, w1 = accelerations[row].ravel(), accelerations[row + 1].ravel()
+        at_start, at_end, between = states[row], states[row + 1], found[m]
         for j in range(size):
-            i, k = j // dofs, j % dofs
-            q0, q1 = states[row, j], states[row + 1, j]
-            u0, u1 = states[row, size + j], states[row + 1, size + j]
-            w0, w1 = accelerations[row, i, k], accelerations[row + 1, i, k]
-            found[m, j] = (
-                q0
-                + end * (q1 - q0)
-                + h * (start_rate * u0 + end_rate * u1 + h * (start_push * w0 + end_push * w1))
+            change = at_end[j] - at_start[j]
+            u0, u1 = at_start[size + j], at_end[size + j]
+            between[j] = (
+                at_start[j]
+                + end * change
+                + h * (start_rate * u0 + end_rate * u1 + h * (start_push * w0[j] + end_push * w1[j]))
             )
-            found[m, size + j] = (
-                end_slope * (q1 - q0) / h
+            between[size + j] = (
+                end_slope * change / h
                 + start_rate_slope * u0
                 + end_rate_slope * u1
-                + h * (start_push_slope * w0 + end_push_slope * w1)
+                + h * (start_push_slope * w0[j] + end_push_slope * w1[j])
             )
         for part in range(2):
             y0, y1 = states[row, 2 * size + part], states[row + 1, 2 * size + part]
