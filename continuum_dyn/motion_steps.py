@@ -30,9 +30,10 @@ ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 POWERS = ("input_power", "dissipated_power")
 
 
-def _far_velocity(
+def far_velocity(
     trace: Trace, forces: SceneForces, reach: Reach
 ) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    """Velocity of the far disk: what is carried on, and what the disk's symbols stand for."""
     near = sp.Matrix([symbol("near_velocity_x"), symbol("near_velocity_y")])
     spin = symbol("near_angular_velocity")
     relative = trace.let("relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
@@ -80,7 +81,7 @@ def motion_step(forces: SceneForces) -> Step:
     reach = reach_of(forces, trace)
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
-    motion, moving = _far_velocity(trace, forces, reach)
+    motion, moving = far_velocity(trace, forces, reach)
     push, pushed = _far_acceleration(trace, forces, reach)
     at_disk |= moving | pushed
     name_forces(trace, forces, at_disk)
@@ -149,7 +150,7 @@ def observe_motion_step(forces: SceneForces) -> Step:
     reach = reach_of(forces, trace)
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
-    motion, moving = _far_velocity(trace, forces, reach)
+    motion, moving = far_velocity(trace, forces, reach)
     booked = {name: _both(forces, "energies", name, at_disk | moving) for name in ENERGIES}
     booked |= {name: _both(forces, "powers", name, at_disk | moving) for name in POWERS}
     return Step(

@@ -12,7 +12,7 @@ import numpy as np
 
 from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integration import inspector, integrate, warm_up
+from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.profiles import Span, spans
 from continuum_dyn.settling import settled, tip_gap
@@ -108,6 +108,7 @@ def _motion(
     start = statics.solve(scenario.initial_tension)
     if not start.found:
         return Run(scenario, start.outcome, _why(start), [start], solve_time=time.perf_counter() - started)
+    solver = with_step(dynamics, solver, stretches, dynamics.state(start.coordinates))
     monitor = Monitor(
         inspect=inspector(dynamics),
         progress=None if progress is None else lambda t: progress(t / study.duration),

@@ -5,6 +5,7 @@ from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 from continuum_dyn.integrators.chain_solver import ChainSolver
 from continuum_dyn.integrators.choice import Choice, choose
 from continuum_dyn.integrators.guard import Budget, Guard, Monitor, interruptible
+from continuum_dyn.integrators.midpoint_solver import MidpointSolver
 
 IMPLICIT = ("Radau", "BDF", "LSODA")
 """SciPy's methods that use the Jacobian."""
@@ -13,6 +14,7 @@ METHODS: dict[str, type[OdeSolver]] = {
     name: type(f"Guarded{method.__name__}", (Guard, method), {})
     for name, method in {
         "chain": ChainSolver,
+        "midpoint": MidpointSolver,
         **{method.__name__: method for method in (RK23, RK45, DOP853, Radau, BDF, LSODA)},
     }.items()
 }
@@ -24,6 +26,7 @@ __all__ = [
     "ChainSolver",
     "Choice",
     "Guard",
+    "MidpointSolver",
     "Monitor",
     "choose",
     "interruptible",

@@ -2,10 +2,7 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
-from continuum_dyn.study import Method
-from statics.effects import Effect
+from continuum_dyn.study import Method, dissipates
 from statics.scene import Scene
 
 
@@ -18,13 +15,9 @@ class Choice(NamedTuple):
 
 def choose(scene: Scene) -> Choice:
     """The method for ``method = "auto"``."""
-    if any(_dissipates(scene, effect) for effect in scene.effects):
+    if any(dissipates(scene, effect) for effect in scene.effects):
         return Choice("chain", "the scene is damped: its fast modes die out and need not be resolved")
     return Choice(
         "DOP853",
         "nothing is damped: an implicit method would damp the fast modes, an explicit one keeps their energy",
     )
-
-
-def _dissipates(scene: Scene, effect: Effect) -> bool:
-    return effect.account == "dissipated_power" and any(map(np.any, effect.columns(scene.arm).values()))
