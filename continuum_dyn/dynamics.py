@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_dyn import implicit_kernel
+from continuum_dyn import implicit_kernel, midpoint_kernel
 from continuum_dyn.motion_kernel import RECIPE
 from continuum_dyn.profiles import Span
 from statics import codegen
@@ -93,7 +93,15 @@ class Dynamics:
     @cached_property
     def implicit(self) -> tuple[Any, np.ndarray, np.ndarray]:
         """The kernel of implicit steps, with its segment and disk tables."""
-        kernel = codegen.load(self.scene, implicit_kernel.RECIPE)
+        return self._loaded(implicit_kernel.RECIPE)
+
+    @cached_property
+    def midpoint(self) -> tuple[Any, np.ndarray, np.ndarray]:
+        """The kernel of the midpoint rule, with its segment and disk tables."""
+        return self._loaded(midpoint_kernel.RECIPE)
+
+    def _loaded(self, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
+        kernel = codegen.load(self.scene, recipe)
         tables = ("segment", kernel.SEGMENT_COLUMNS), ("disk", kernel.DISK_COLUMNS)
         segments, disks = (self.scene.table(place, columns) for place, columns in tables)
         return kernel, segments, disks

@@ -12,11 +12,13 @@ import numpy as np
 if TYPE_CHECKING:
     from continuum_dyn.generated import (
         CHAIN_COLUMNS,
+        DISPLACEMENT_START,
         ELIMINATE_START,
         MOTION_START,
         MOTION_TANGENT_START,
         OBSERVE_START,
         RESIDUAL_TANGENT_START,
+        displacement_step,
         motion_step,
         motion_tangent_step,
         observe_step,
@@ -56,6 +58,14 @@ def solve_mass(
     descent = np.empty_like(residual)
     eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, descent)
     substitute_sweep(chain, descent, w)
+
+
+def displacement(chain: np.ndarray, change: np.ndarray) -> float:
+    """Largest displacement (m) of a disk under a small change of coordinates, shape (n, dofs)."""
+    carried = DISPLACEMENT_START
+    for i in range(change.shape[0]):
+        carried = displacement_step(i, carried, chain, change)
+    return math.sqrt(carried[0])
 
 
 def acceleration(

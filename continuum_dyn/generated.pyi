@@ -7,10 +7,12 @@ Carried = tuple[float, ...]
 CHAIN_COLUMNS: int
 DISPLACEMENT_START: Carried
 ELIMINATE_START: Carried
+MOMENTUM_START: Carried
 MOTION_START: Carried
 MOTION_TANGENT_START: Carried
 OBSERVE_START: Carried
 RESIDUAL_TANGENT_START: Carried
+VELOCITY_START: Carried
 
 def motion_step(
     i: int,
@@ -51,3 +53,16 @@ def observe_step(
     velocity: np.ndarray,
 ) -> Carried: ...
 def displacement_step(i: int, carried: Carried, chain: np.ndarray, change: np.ndarray) -> Carried: ...
+def velocity_step(
+    i: int,
+    carried: Carried,
+    q: np.ndarray,
+    u: np.ndarray,
+    tension: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+) -> Carried: ...
+def momentum_step(
+    i: int, carried: Carried, chain: np.ndarray, momentum: np.ndarray, slope: np.ndarray
+) -> Carried: ...

@@ -6,6 +6,7 @@ Integration restarts at every corner of a tension profile, so that no step cross
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from scipy.integrate import solve_ivp
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check, interruptible
+from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Span
 from continuum_dyn.study import Solver
 from continuum_dyn.trajectory import Trajectory, trajectory_of
@@ -23,6 +25,19 @@ BRIEF = 1e-12
 
 FIRST_STEP = 1e-3
 """First step of each span, in radians of the arm's lowest frequency or of the drive's, if that is higher."""
+
+PART_OF_PERIOD = 1 / 20
+"""Step of the midpoint rule, in the shortest period of the arm or of its drive."""
+
+
+def with_step(dynamics: Dynamics, solver: Solver, stretches: list[Span], y: np.ndarray) -> Solver:
+    """The solver's settings, with the step that its method takes by default from rest at ``y``."""
+    if solver.method != "midpoint" or solver.step is not None:
+        return solver
+    drive = max(float(np.max(span.pieces[:, 4], initial=0.0)) for span in stretches)
+    whole = 2.0 * np.pi / (stretches[-1].end - stretches[0].start)
+    fastest = max(fastest_frequency(dynamics, stretches[0], y), drive, whole)
+    return replace(solver, step=PART_OF_PERIOD * 2.0 * np.pi / fastest)
 
 
 def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
@@ -74,6 +89,7 @@ def integrate(
     check(dynamics.scene, solver.method)
     monitor.reached = (0.0, y)
     steps, rejections = monitor.steps, monitor.rejections
+    solver = with_step(dynamics, solver, stretches, y)
     parts = [_Samples(samples[:1], y[None, :], stretches[0].tension(samples[:1]))]
     counters: Counter[str] = Counter()
     with interruptible(monitor), warnings.catch_warnings():
@@ -115,7 +131,7 @@ def _counted(solution: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int
     One is a segment's part of a right-hand side, of a Newton iteration, or of one column of a Jacobian.
     """
     n, columns = dynamics.scene.arm.segments, 2 * dynamics.size
-    if solver.method in TABLEAUX:
+    if solver.method in (*TABLEAUX, "midpoint"):
         return {"newton_iterations": solution.nfev, "segment_evaluations": solution.nfev * n}
     return {
         "evaluations": int(solution.nfev),
@@ -139,7 +155,6 @@ def _solve_span(dynamics: Dynamics, solver: Solver, span: Span, at: np.ndarray, 
         monitor.reached[1],
         method=METHODS[solver.method],
         t_eval=np.unique(at),
-        first_step=_first_step(dynamics, span),
         monitor=monitor,
         **_options(dynamics, solver, span),
     )
@@ -147,11 +162,14 @@ def _solve_span(dynamics: Dynamics, solver: Solver, span: Span, at: np.ndarray, 
 
 def _options(dynamics: Dynamics, solver: Solver, span: Span) -> dict[str, Any]:
     """What the method needs beside the equations."""
+    if solver.method == "midpoint":
+        return {"dynamics": dynamics, "span": span, "step": solver.step}
+    first_step = _first_step(dynamics, span)
     if solver.method in TABLEAUX:
         allowed = (solver.rtol + solver.atol) * dynamics.scene.arm.total_length
-        tableau = TABLEAUX[solver.method]
-        return {"dynamics": dynamics, "span": span, "tolerance": allowed, "tableau": tableau}
-    tolerances = {"rtol": solver.rtol, "atol": solver.atol * dynamics.scales()}
+        chain = {"dynamics": dynamics, "span": span, "tableau": TABLEAUX[solver.method]}
+        return chain | {"tolerance": allowed, "first_step": first_step}
+    tolerances = {"rtol": solver.rtol, "atol": solver.atol * dynamics.scales(), "first_step": first_step}
     if solver.method in IMPLICIT:
         return tolerances | {"jac": lambda t, y: dynamics.jacobian(t, y, span)}
     return tolerances

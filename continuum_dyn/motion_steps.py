@@ -32,9 +32,10 @@ ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 POWERS = ("input_power", "dissipated_power")
 
 
-def _far_velocity(
+def far_velocity(
     trace: Trace, forces: SceneForces, reach: Reach
 ) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    """Velocity of the far disk: what is carried on, and what the disk's symbols stand for."""
     near = sp.Matrix([symbol("near_velocity_x"), symbol("near_velocity_y")])
     spin = symbol("near_angular_velocity")
     relative = trace.let("relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
@@ -71,7 +72,7 @@ def _far_acceleration(
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
 
-def _span_velocity(
+def span_velocity(
     trace: Trace, forces: SceneForces, moving: dict[sp.Symbol, Any]
 ) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
     """Velocities of the span's two ends: what is carried on, and what the span's symbols stand for."""
@@ -86,13 +87,13 @@ def _span_velocity(
     return carried, at_span
 
 
-def _booked(forces: SceneForces, kind: str, account: str, at_disk: Any, at_span: Any) -> Any:
+def booked(forces: SceneForces, kind: str, account: str, at_disk: Any, at_span: Any) -> Any:
     """One line of the ledger: what segment, disk and span put into it."""
-    booked = getattr(forces.on_segment, kind).get(account, 0)
-    booked += placed(getattr(forces.on_disk, kind).get(account, 0), at_disk)
+    total = getattr(forces.on_segment, kind).get(account, 0)
+    total += placed(getattr(forces.on_disk, kind).get(account, 0), at_disk)
     if forces.on_span is not None:
-        booked += placed(getattr(forces.on_span, kind).get(account, 0), at_span)
-    return booked
+        total += placed(getattr(forces.on_span, kind).get(account, 0), at_span)
+    return total
 
 
 def motion_step(forces: SceneForces) -> Step:
@@ -101,14 +102,14 @@ def motion_step(forces: SceneForces) -> Step:
     reach = reach_of(forces, trace)
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
-    motion, moving = _far_velocity(trace, forces, reach)
+    motion, moving = far_velocity(trace, forces, reach)
     push, pushed = _far_acceleration(trace, forces, reach)
     ends, at_span = span_ends(trace, forces, frame, at_disk)
-    ends_motion, spanning = _span_velocity(trace, forces, moving)
+    ends_motion, spanning = span_velocity(trace, forces, moving)
     at_disk, at_span = at_disk | moving | pushed, at_span | spanning
     name_forces(trace, forces, at_disk, at_span)
     powers = {
-        name: trace.let(f"added_{name}", _booked(forces, "powers", name, at_disk, at_span)) for name in POWERS
+        name: trace.let(f"added_{name}", booked(forces, "powers", name, at_disk, at_span)) for name in POWERS
     }
     return Step(
         "motion_step",
@@ -174,12 +175,12 @@ def observe_motion_step(forces: SceneForces) -> Step:
     reach = reach_of(forces, trace)
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
-    motion, moving = _far_velocity(trace, forces, reach)
+    motion, moving = far_velocity(trace, forces, reach)
     ends, at_span = span_ends(trace, forces, frame, at_disk)
-    ends_motion, spanning = _span_velocity(trace, forces, moving)
+    ends_motion, spanning = span_velocity(trace, forces, moving)
     at_disk, at_span = at_disk | moving, at_span | spanning
-    booked = {
-        name: _booked(forces, kind, name, at_disk, at_span)
+    accounts = {
+        name: booked(forces, kind, name, at_disk, at_span)
         for kind, names in (("energies", ENERGIES), ("powers", POWERS))
         for name in names
     }
@@ -189,7 +190,7 @@ def observe_motion_step(forces: SceneForces) -> Step:
         ("q", "u", "tension", "segments", "disks", "pose", "velocity"),
         trace,
         results={
-            name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in booked.items()
+            name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in accounts.items()
         },
         carried=frame | pose | motion | ends | ends_motion,
         stores={

@@ -8,7 +8,7 @@ as it is. A log is complete or not there: it is written beside its place and the
 import platform
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -167,7 +167,7 @@ def _root_attributes(run: Run) -> dict[str, Any]:
         ),
     }
     if isinstance(run.scenario.study, MotionStudy):
-        attributes |= asdict(run.solver or run.scenario.solver)
+        attributes |= (run.solver or run.scenario.solver).settings
     for name in ("tip_error", "static_gap"):
         if getattr(run, name) is not None:
             attributes[name] = getattr(run, name)

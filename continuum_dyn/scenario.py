@@ -163,7 +163,12 @@ def load_scenario(path: str | Path) -> Scenario:
 
 
 def _check_tolerances(content: dict[str, Any]) -> None:
-    given = [name for name in ("rtol", "atol") if name in content.get("solver", {})]
+    settings = content.get("solver", {})
+    given = [name for name in ("rtol", "atol") if name in settings]
+    if given and settings.get("method") == "midpoint":
+        raise InputError(
+            f'[solver] {" and ".join(given)} beside method = "midpoint": its steps are equal. Give step (s).'
+        )
     if given and "accuracy" in content:
         raise InputError(
             f"[solver] {' and '.join(given)} beside [accuracy]: the accuracy decides the tolerances. "

@@ -12,7 +12,7 @@ import numpy as np
 
 from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integration import inspector, integrate, warm_up
+from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
 from continuum_dyn.profiles import Span, spans
@@ -162,6 +162,16 @@ def _why(point: Equilibrium) -> str:
     return f"no equilibrium found {at} in {point.iterations} iterations; try a ramp from a lower tension"
 
 
+def _settled_on(
+    scenario: Scenario, study: MotionStudy, dynamics: Dynamics, y: np.ndarray, stretches: list[Span]
+) -> Solver:
+    """The solver with what the program chooses: the method, and the midpoint rule's step."""
+    solver, exact = scenario.solver, scenario.accuracy is not None
+    if solver.method == "auto":
+        solver = replace(solver, method=choose(dynamics, y, stretches[0], study.duration, exact).method)
+    return with_step(dynamics, solver, stretches, y)
+
+
 def _motion(
     scenario: Scenario, study: MotionStudy, progress: Callable[[float], None] | None, budget: Budget
 ) -> Run:
@@ -172,10 +182,8 @@ def _motion(
     start = statics.solve(scenario.initial_tension)
     if not start.found:
         return Run(scenario, start.outcome, _why(start), [start], solve_time=time.perf_counter() - started)
-    solver = scenario.solver
-    if solver.method == "auto":
-        y = dynamics.state(start.coordinates)
-        solver = replace(solver, method=choose(dynamics, y, stretches[0]).method)
+    y = dynamics.state(start.coordinates)
+    solver = _settled_on(scenario, study, dynamics, y, stretches)
     warm_up(dynamics, solver, stretches[0])
     started = time.perf_counter()
     monitor = Monitor(

@@ -9,6 +9,7 @@ from pydantic.dataclasses import dataclass
 
 from continuum_dyn.profiles import Constant, Profile
 from statics.checked import STRICT, Positive
+from statics.effects import Effect
 from statics.errors import InputError
 from statics.scene import Scene
 
@@ -64,7 +65,16 @@ STUDIES: dict[str, type[Study]] = {
     "step_response": StepResponseStudy,
 }
 
-Method = Literal["auto", "chain", "explicit", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+Method = Literal["auto", "chain", "explicit", "midpoint", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+
+
+def dissipated_by(scene: Scene) -> list[str]:
+    """Names of the effects that take energy from the scene's motion."""
+    return [effect.name for effect in scene.effects if _dissipates(scene, effect)]
+
+
+def _dissipates(scene: Scene, effect: Effect) -> bool:
+    return effect.account == "dissipated_power" and any(map(np.any, effect.columns(scene.arm).values()))
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -72,15 +82,32 @@ class Solver:
     """Integrator and its local error tolerances.
 
     "chain" is the arm's own implicit method and "explicit" its like for motions that are not stiff: a step's
-    error may displace no node by more than ``rtol`` + ``atol`` times the arm's length. "auto" decides between
-    them by the motion's own modes. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend
-    angles; elongations use it times the segment's rest length, rates the same times the arm's natural
-    frequency, energies times its bending stiffness over that length.
+    error may displace no node by more than ``rtol`` + ``atol`` times the arm's length. "midpoint" keeps the
+    energy of a scene without damping; it has no tolerances but a ``step`` (s), by default a twentieth of the
+    shortest period of the arm at the start or of its drive. "auto" decides between them by the motion's own
+    modes. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend angles; elongations use it
+    times the segment's rest length, rates the same times the arm's natural frequency, energies times its
+    bending stiffness over that length.
     """
 
     method: Method = "auto"
     rtol: Annotated[float, Field(ge=1e-14, lt=1)] = 1e-7
     atol: Positive = 1e-9
+    step: Positive | None = None
+
+    def __post_init__(self) -> None:
+        if self.step is not None and self.method != "midpoint":
+            raise InputError(
+                f'[solver] step belongs to method = "midpoint"; "{self.method}" chooses its steps by rtol '
+                "and atol. Give those, or that method."
+            )
+
+    @property
+    def settings(self) -> dict[str, str | float]:
+        """The method and what it goes by, by name."""
+        if self.method == "midpoint":
+            return {"method": self.method} | ({} if self.step is None else {"step": self.step})
+        return {"method": self.method, "rtol": self.rtol, "atol": self.atol}
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -123,6 +150,8 @@ class Scenario:
                 f'[accuracy] belongs to a study of motion, or to subsegments = "auto"; this is '
                 f'"{self.study.kind}" with given segments.'
             )
+        if self.solver.method == "midpoint":
+            self._check_midpoint()
         if isinstance(self.study, MotionStudy):
             self._check_motion(self.study)
         elif isinstance(self.study, RampStudy):
@@ -133,6 +162,19 @@ class Scenario:
                 )
         elif not all(isinstance(profile, Constant) for profile in self.profiles):
             raise InputError('an "equilibrium" study takes one number for each tension.')
+
+    def _check_midpoint(self) -> None:
+        if self.accuracy is not None:
+            raise InputError(
+                '[accuracy] chooses tolerances, and method = "midpoint" has none. Give [solver] step without '
+                "[accuracy], or another method."
+            )
+        damping = dissipated_by(self.scene)
+        if damping:
+            raise InputError(
+                f'method = "midpoint" would leave out what dissipates: {", ".join(damping)}. Take method = '
+                f'"chain", or leave {" and ".join(damping)} out of [effects].'
+            )
 
     def _check_motion(self, study: MotionStudy) -> None:
         if not self.scene.has("inertia"):

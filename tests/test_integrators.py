@@ -200,10 +200,10 @@ def test_jump_at_the_start_is_resolved_though_the_axial_modes_are_fast(step_resp
     np.testing.assert_allclose(chain.elongation, radau.elongation, atol=2e-3 * np.ptp(radau.elongation))
 
 
-def chosen(scene: Scene) -> str:
+def chosen(scene: Scene, duration: float = 1.0, exact: bool = False) -> str:
     dynamics = Dynamics(scene)
     start = dynamics.state(equilibrium(scene, 0.0).coordinates)
-    return choose(dynamics, start, spans((Step(0.0, 1.0),), 1.0)[0]).method
+    return choose(dynamics, start, spans((Step(0.0, 1.0),), duration)[0], duration, exact).method
 
 
 def without_extension(disks: int) -> Scene:
@@ -217,6 +217,7 @@ def test_auto_goes_by_the_motions_own_modes() -> None:
     assert chosen(damped) == "chain"
     assert [chosen(without_extension(disks)) for disks in (1, 3, 4)] == ["explicit", "chain", "chain"]
     assert [chosen(scene) for scene in (free, undamped)] == ["explicit", "explicit"]
+    assert [chosen(free, 1e4), chosen(free, 1e4, exact=True)] == ["midpoint", "explicit"]
 
 
 def test_undamped_motion_keeps_its_energy_under_auto() -> None:

@@ -18,7 +18,8 @@ from statics import InputError, Outcome, Scene
 
 def step_to(tension: float, duration: float = 0.05, method: Method = "LSODA") -> Scenario:
     study = StepResponseStudy(duration, samples=51)
-    return Scenario(moving(rone2012()), (Step(before=0.0, after=tension),), study, Solver(method))
+    scene = moving(rone2012(), damping=method != "midpoint")
+    return Scenario(scene, (Step(before=0.0, after=tension),), study, Solver(method))
 
 
 def assert_kept(run: Run, until: float) -> None:

@@ -213,3 +213,15 @@ def test_subsegments_that_cannot_be_are_refused(tmp_path: Path, given: str, told
 def test_density_needs_an_area() -> None:
     with pytest.raises(InputError, match="area"):
         Arm(2, 0.1, core_density=7800.0)
+
+
+def test_midpoint_rule_knows_cables_past_nodes_between_disks() -> None:
+    """Undamped: it tends to the explicit method's motion with second order, and keeps the energy."""
+    scene = moving(meshed(2, density=7800.0), damping=False)
+    scenario = Scenario(scene, (Step(1.0, 2.0),), MotionStudy(4e-3, samples=9))
+    exact = motion(replace(scenario, solver=Solver("explicit", 1e-12, 1e-15)))
+    found = [motion(replace(scenario, solver=Solver("midpoint", step=step))) for step in (2e-6, 1e-6)]
+    coarse, fine = (tip_distance(trajectory, exact) for trajectory in found)
+    assert fine < 1e-7
+    assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.3)
+    assert np.abs(found[1].ledger_gap).max() < 1e-4 * exact.ledger["kinetic_energy"].max()

@@ -52,7 +52,8 @@ def _print_method(scenario: Any) -> None:
         return
     dynamics = Dynamics(scenario.scene)
     start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_tension).coordinates)
-    choice = choose(dynamics, start, spans(scenario.profiles, scenario.study.duration)[0])
+    duration, exact = scenario.study.duration, scenario.accuracy is not None
+    choice = choose(dynamics, start, spans(scenario.profiles, duration)[0], duration, exact)
     typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 

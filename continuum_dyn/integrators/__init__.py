@@ -5,6 +5,7 @@ from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 from continuum_dyn.integrators.chain_solver import ChainSolver
 from continuum_dyn.integrators.choice import Choice, check, choose, rates
 from continuum_dyn.integrators.guard import Budget, Guard, Monitor, interruptible
+from continuum_dyn.integrators.midpoint_solver import MidpointSolver
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, Tableau
 
 IMPLICIT = ("Radau", "BDF", "LSODA")
@@ -18,6 +19,7 @@ METHODS: dict[str, type[OdeSolver]] = {
     for name, method in {
         "chain": ChainSolver,
         "explicit": ChainSolver,
+        "midpoint": MidpointSolver,
         **{method.__name__: method for method in (RK23, RK45, DOP853, Radau, BDF, LSODA)},
     }.items()
 }
@@ -30,6 +32,7 @@ __all__ = [
     "ChainSolver",
     "Choice",
     "Guard",
+    "MidpointSolver",
     "Monitor",
     "check",
     "choose",

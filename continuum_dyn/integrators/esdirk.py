@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from continuum_dyn.equations_of_motion import acceleration, motion_sweep, tension_at
-    from continuum_dyn.generated import CHAIN_COLUMNS, DISPLACEMENT_START, ELIMINATE_START, displacement_step
+    from continuum_dyn.equations_of_motion import acceleration, displacement, motion_sweep, tension_at
+    from continuum_dyn.generated import CHAIN_COLUMNS, ELIMINATE_START
     from statics.chain import clearance_sweep, eliminate_sweep, residual_sweep, substitute_sweep
 
     Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -37,14 +37,6 @@ STAGE_PART = 0.02
 SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 
 GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
-
-
-def displacement(chain: np.ndarray, change: np.ndarray) -> float:
-    """Largest displacement (m) of a disk under a small change of coordinates, shape (n, dofs)."""
-    carried = DISPLACEMENT_START
-    for i in range(change.shape[0]):
-        carried = displacement_step(i, carried, chain, change)
-    return math.sqrt(carried[0])
 
 
 def add_weighted(h: float, weights: np.ndarray, parts: np.ndarray, count: int, total: np.ndarray) -> None:

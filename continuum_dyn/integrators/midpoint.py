@@ -1,0 +1,190 @@
+"""Steps of the variational midpoint rule on the chain: plain Python, composed into kernels.
+
+For a scene without dissipation. From coordinates q0 and momenta p0 a step h finds the mean rate v of
+
+    p(qm, v) + h/2 (r - dT/dq) - p0 = 0,   qm = q0 + h/2 v,   Newton matrix M + (h/2)^2 K
+    q1 = q0 + h v,   p1 = p0 - h (r - dT/dq)
+
+with r = dV/dq, the residual at rest, and the tensions of the step's middle (Marsden and West 2001, sec. 2.3.1
+and 2.5, for alpha = 1/2). The rule is symplectic, symmetric and of order 2, so the energy's error stays
+bounded and does not grow (Hairer, Lubich and Wanner 2006, ch. VI.6 and IX.8). The same rule on (q, u) is not
+symplectic, since the mass depends on q. The matrix leaves out the velocity's own terms, which nearly cancel.
+
+Arguments travel in groups:
+
+- ``arm``: pieces of the tension profiles, segment table, disk table;
+- ``records``: q, p, shape (rows, n, dofs), and input work (rows,): row r is the end of step r;
+- ``past``: mean rates of the last steps, latest first, shape (PAST, n, dofs);
+- ``work``: shape (WORK, n, dofs), left to the functions below.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from continuum_dyn.equations_of_motion import displacement, tension_at
+    from continuum_dyn.generated import (
+        CHAIN_COLUMNS,
+        ELIMINATE_START,
+        MOMENTUM_START,
+        VELOCITY_START,
+        momentum_step,
+        velocity_step,
+    )
+    from statics.chain import clearance_sweep, eliminate_sweep, substitute_sweep
+    from statics.generated import RESIDUAL_START, residual_step
+
+    Arm = tuple[np.ndarray, np.ndarray, np.ndarray]
+    Records = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+PAST, WORK = 3, 6
+MOST_ITERATIONS = 20
+"""Newton iterations after which a step is given up."""
+STAGNANT = 1e5
+"""Times what is allowed: changes below that no longer shrink because of rounding."""
+
+
+def momentum_sweeps(
+    q: np.ndarray,
+    u: np.ndarray,
+    tension: np.ndarray,
+    arm: "Arm",
+    chain: np.ndarray,
+    residual: np.ndarray,
+    momentum: np.ndarray,
+    slope: np.ndarray,
+) -> float:
+    """dV/dq into ``residual``, dT/du into ``momentum``, dT/dq into ``slope``; returns the power in."""
+    _, segments, disks = arm
+    outward = VELOCITY_START
+    for i in range(q.shape[0]):
+        outward = velocity_step(i, outward, q, u, tension, segments, disks, chain)
+    reaction, beyond = RESIDUAL_START, MOMENTUM_START
+    for i in range(q.shape[0] - 1, -1, -1):
+        reaction = residual_step(i, reaction, disks, chain, residual)
+        beyond = momentum_step(i, beyond, chain, momentum, slope)
+    return outward[0]
+
+
+def solve_step(
+    t: float,
+    h: float,
+    q: np.ndarray,
+    p: np.ndarray,
+    v: np.ndarray,
+    allowed: float,
+    arm: "Arm",
+    chain: np.ndarray,
+    work: np.ndarray,
+    pull: np.ndarray,
+) -> tuple[int, float]:
+    """Newton's method for the mean rate ``v`` of a step, from its predictor; ``allowed`` in m.
+
+    It ends where what is left is below ``allowed``, or as small as rounding lets it become. Leaves r - dT/dq
+    in ``pull``; returns the iterations (negative if it did not converge) and the power in. A step of h = 0
+    turns momenta into rates, v = M^-1 p.
+    """
+    middle, residual, momentum, slope, descent, change = work
+    _, segments, disks = arm
+    tension = np.empty(arm[0].shape[0])
+    tension_at(t + 0.5 * h, arm[0], tension)
+    start = (0.25 * h * h, *ELIMINATE_START[1:])
+    last, power = math.inf, 0.0
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        for i in range(q.shape[0]):
+            for k in range(q.shape[1]):
+                middle[i, k] = q[i, k] + 0.5 * h * v[i, k]
+        power = momentum_sweeps(middle, v, tension, arm, chain, residual, momentum, slope)
+        for i in range(q.shape[0]):
+            for k in range(q.shape[1]):
+                pull[i, k] = residual[i, k] - slope[i, k]
+                residual[i, k] = momentum[i, k] + 0.5 * h * pull[i, k] - p[i, k]
+        eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
+        substitute_sweep(chain, descent, change)
+        size = abs(h) * displacement(chain, change)
+        for i in range(q.shape[0]):
+            for k in range(q.shape[1]):
+                v[i, k] += change[i, k]
+        if not math.isfinite(size):
+            return -iteration, power
+        if size <= allowed or (size <= STAGNANT * allowed and size >= 0.5 * last):
+            return iteration, power
+        last = size
+    return -MOST_ITERATIONS, power
+
+
+def predict(past: np.ndarray, v: np.ndarray) -> None:
+    """The next step's mean rate into ``v``: the parabola through those of the last three."""
+    for i in range(v.shape[0]):
+        for k in range(v.shape[1]):
+            v[i, k] = 3.0 * (past[0, i, k] - past[1, i, k]) + past[2, i, k]
+
+
+def advance(
+    t: float, h: float, records: "Records", past: np.ndarray, allowed: float, arm: "Arm"
+) -> tuple[int, int]:
+    """Equal steps from (t, row 0 of the records) until they are full, or a step does not converge.
+
+    A step that leaves the arm at a geometric limit is taken only as the first, so that the ones before it
+    are not lost with it. Returns the steps taken and the Newton iterations.
+    """
+    qs, ps, input_work = records
+    rows, n, dofs = qs.shape
+    v, pull = np.empty((n, dofs)), np.empty((n, dofs))
+    work, chain = np.empty((WORK, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    iterations = 0
+    for row in range(1, rows):
+        predict(past, v)
+        begin = t + (row - 1) * h
+        took, power = solve_step(begin, h, qs[row - 1], ps[row - 1], v, allowed, arm, chain, work, pull)
+        iterations += abs(took)
+        if took < 0:
+            return row - 1, iterations
+        for i in range(n):
+            for k in range(dofs):
+                qs[row, i, k] = qs[row - 1, i, k] + h * v[i, k]
+                ps[row, i, k] = ps[row - 1, i, k] - h * pull[i, k]
+        bad = clearance_sweep(qs[row], arm[1]) <= 0.0
+        if bad and row > 1:
+            return row - 1, iterations
+        input_work[row] = input_work[row - 1] + h * power
+        for m in range(PAST - 1, 0, -1):
+            past[m] = past[m - 1]
+        past[0] = v
+        if bad:
+            return row, iterations
+    return rows - 1, iterations
+
+
+def start_momenta(q: np.ndarray, u: np.ndarray, arm: "Arm", p: np.ndarray) -> None:
+    """The momenta of coordinates and rates, into ``p``."""
+    n, dofs = q.shape
+    work, chain = np.empty((2, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    momentum_sweeps(q, u, np.zeros(arm[0].shape[0]), arm, chain, work[0], p, work[1])
+
+
+def sample(
+    at: np.ndarray, t: float, h: float, records: "Records", allowed: float, arm: "Arm", found: np.ndarray
+) -> None:
+    """States at the increasing times ``at`` into ``found``, (len(at), size); ``t`` is the time of row 0.
+
+    Each by a shorter step of the same rule from the row before: a polynomial between the rows would show
+    energy errors of its own.
+    """
+    qs, ps, input_work = records
+    rows, n, dofs = qs.shape
+    size = n * dofs
+    v, pull = np.empty((n, dofs)), np.empty((n, dofs))
+    work, chain = np.empty((WORK, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    for m in range(len(at)):
+        row = min(int((at[m] - t) / h), rows - 1)
+        part = at[m] - (t + row * h)
+        end = min(row + 1, rows - 1)
+        v[:] = (qs[end] - qs[end - 1]) / h
+        _, power = solve_step(t + row * h, part, qs[row], ps[row], v, allowed, arm, chain, work, pull)
+        q, p = qs[row] + part * v, ps[row] - part * pull
+        solve_step(at[m], 0.0, q, p, v, allowed, arm, chain, work, pull)
+        found[m, :size], found[m, size : 2 * size] = q.ravel(), v.ravel()
+        found[m, 2 * size], found[m, 2 * size + 1] = input_work[row] + part * power, 0.0

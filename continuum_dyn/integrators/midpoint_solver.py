@@ -1,0 +1,109 @@
+"""The midpoint rule behind SciPy's interface: many compiled steps to one call."""
+
+import math
+from typing import Any
+
+import numpy as np
+from scipy.integrate import DenseOutput, OdeSolver
+
+from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.integrators.midpoint import PAST
+from continuum_dyn.profiles import Span
+
+BATCH = 256
+"""Most internal steps to one step of SciPy's."""
+
+ROUNDING = 1e-17
+"""Part of the arm's length by which the last iteration of a step may displace a disk."""
+
+
+class MidpointSolver(OdeSolver):
+    """Variational midpoint rule for a scene without dissipation: ``solve_ivp(..., method=MidpointSolver)``.
+
+    Options: ``dynamics`` and ``span``, whose right-hand side this is (``fun`` is not called); ``step`` (s),
+    at most: the time to ``t_bound`` is cut into equal ones. ``internal_steps`` counts those of the last
+    call, which takes no more than ``steps_left``.
+    """
+
+    steps_left = BATCH
+
+    def __init__(
+        self,
+        fun: Any,
+        t0: float,
+        y0: np.ndarray,
+        t_bound: float,
+        vectorized: bool = False,
+        *,
+        dynamics: Dynamics,
+        span: Span,
+        step: float,
+    ) -> None:
+        super().__init__(fun, t0, y0, t_bound, vectorized)
+        self.kernel, segments, disks = dynamics.midpoint
+        self.arm = (span.pieces, segments, disks)
+        self.allowed = ROUNDING * dynamics.scene.arm.total_length
+        self.steps = max(1, math.ceil((t_bound - t0) / step * (1.0 - 1e-12)))
+        self.size, self.start, self.taken = (t_bound - t0) / self.steps, t0, 0
+        q, u = (part[0] for part in dynamics.split(np.asarray(y0, dtype=float)[None, :]))
+        shape = (BATCH + 1, *q.shape)
+        self.records = np.empty(shape), np.empty(shape), np.empty(shape[0])
+        self.records[0][0], self.records[2][0] = q, y0[-2]
+        self.kernel.start_momenta(q, u, self.arm, self.records[1][0])
+        self.past = np.tile(u, (PAST, 1, 1))
+        self.internal_steps = 0
+
+    def _time(self, taken: int) -> float:
+        return self.start + taken * self.size
+
+    def _step_impl(self) -> tuple[bool, str | None]:
+        for column in self.records:
+            column[0] = column[self.internal_steps]
+        rows = min(BATCH, self.steps_left, self.steps - self.taken) + 1
+        records = tuple(column[:rows] for column in self.records)
+        taken, iterations = self.kernel.advance(
+            self._time(self.taken), self.size, records, self.past, self.allowed, self.arm
+        )
+        self.internal_steps = taken
+        self.taken += taken
+        self.nfev += iterations
+        self.njev += iterations
+        self.nlu += iterations
+        if taken == 0:
+            return False, f"no solution found for a step of {self.size:.3g} s; try a smaller [solver] step"
+        self.t = self.t_bound if self.taken == self.steps else self._time(self.taken)
+        self.y = self._dense_output_impl()(self.t)
+        return True, None
+
+    def _dense_output_impl(self) -> "MidpointInterpolant":
+        rows = slice(0, self.internal_steps + 1)
+        records = tuple(column[rows].copy() for column in self.records)
+        start = self._time(self.taken - self.internal_steps)
+        return MidpointInterpolant(self.kernel, start, self.size, records, self.allowed, self.arm)
+
+
+class MidpointInterpolant(DenseOutput):
+    """The state within a batch of steps: by a shorter step of the same rule."""
+
+    def __init__(
+        self,
+        kernel: Any,
+        start: float,
+        size: float,
+        records: tuple[np.ndarray, ...],
+        allowed: float,
+        arm: tuple[np.ndarray, ...],
+    ) -> None:
+        super().__init__(start, start + (len(records[0]) - 1) * size)
+        self.kernel, self.records = kernel, records
+        self.size, self.allowed, self.arm = size, allowed, arm
+
+    def _call_impl(self, t: np.ndarray) -> np.ndarray:
+        at = np.atleast_1d(np.asarray(t, dtype=float))
+        order = np.argsort(at, kind="stable")
+        found = np.empty((at.size, 2 * self.records[0][0].size + 2))
+        arguments = (self.t_old, self.size, self.records, self.allowed, self.arm)
+        self.kernel.sample(at[order], *arguments, found)
+        states = np.empty_like(found)
+        states[order] = found
+        return states[0] if np.ndim(t) == 0 else states.T

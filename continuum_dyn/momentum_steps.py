@@ -1,0 +1,125 @@
+"""One step of the sweeps for momenta: p = dT/du and dT/dq on the chain, O(n).
+
+A disk beyond segment j moves with it as a rigid body does, so only the sums of momenta beyond count: P,
+linear, and N, angular about the far disk, carried inwards by the transition's transpose as reactions are.
+With S the segment's partials, v its far disk's velocity, omega0 its near disk's angular velocity and r its
+reach:
+
+    p_a     = S_a . (P, N)
+    dT/dq_a = P . (omega0 z x r_a + r_ab u_b) - phi_a P . (z x v)
+
+The second is p_a's with the partials' own rates: dv/dq_a = d(dv/du_a)/dt (Lagrange), and what lies beyond
+turns about the far disk. A disk's mass is taken to be the same in both directions.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import sympy as sp
+
+from continuum_dyn.motion_steps import booked, far_velocity, span_velocity
+from statics.recursion import (
+    Reach,
+    Step,
+    Weights,
+    far_pose,
+    name_forces,
+    placed,
+    reach_of,
+    span_ends,
+    turn_frame,
+    turned,
+)
+from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols, symbol
+from statics.trace import Trace
+from statics.virtual_work import Forces, SceneForces
+
+CONSERVATIVE = Weights(1, 0, symbol("stiffness_weight"))
+"""Mass, and stiffness times the weight that the sweep is handed."""
+
+
+def conservative(forces: SceneForces) -> SceneForces:
+    """The scene with d(T - V)/dq of each part for its force: without inertia's forces, and undamped."""
+    return replace(
+        forces,
+        on_segment=_conservative(forces.on_segment, forces.segment),
+        on_disk=_conservative(forces.on_disk, forces.disk),
+        on_span=forces.on_span and forces.span and _conservative(forces.on_span, forces.span),
+    )
+
+
+def _conservative(part: Forces, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+    at_rest = part.force.subs(dict.fromkeys([*at.rates, *at.accelerations], 0))
+    force = at_rest + sp.Matrix([part.energies["kinetic_energy"].diff(q) for q in at.coordinates])
+    none = sp.zeros(*part.damping.shape)
+    return replace(part, force=force, damping=none, stiffness=-force.jacobian(at.coordinates))
+
+
+def _momentum(part: Forces, at: SegmentSymbols | DiskSymbols) -> sp.Matrix:
+    """Momentum dT/du of one segment or disk by itself."""
+    return sp.Matrix([part.energies["kinetic_energy"].diff(rate) for rate in at.rates])
+
+
+def _name_partial_rates(trace: Trace, forces: SceneForces, reach: Reach) -> None:
+    """Name the time derivative of every column of the reach's partials."""
+    spin = symbol("near_angular_velocity")
+    for a, row in enumerate(reach.by_qq):
+        rate = spin * turned(reach.by_q[:, a])
+        for second, u in zip(row, forces.segment.rates, strict=True):
+            rate += second * u
+        for axis in range(2):
+            trace.name(f"partial_rate_{axis}{a}", rate[axis])
+
+
+def velocity_step(forces: SceneForces) -> Step:
+    """Outwards: geometry, velocities, momenta of the disks, and the loads of a conservative scene."""
+    trace = Trace()
+    reach = reach_of(forces, trace)
+    frame = turn_frame(trace, forces)
+    pose, at_disk = far_pose(trace, forces, reach)
+    motion, moving = far_velocity(trace, forces, reach)
+    ends, at_span = span_ends(trace, forces, frame, at_disk)
+    ends_motion, spanning = span_velocity(trace, forces, moving)
+    at_disk, at_span = at_disk | moving, at_span | spanning
+    name_forces(trace, forces, at_disk, at_span)
+    _name_partial_rates(trace, forces, reach)
+    for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
+        trace.name(f"disk_momentum_{row}", placed(value, at_disk))
+    trace.let("segment_momentum", _momentum(forces.on_segment, forces.segment))
+    power = booked(forces, "powers", "input_power", at_disk, at_span)
+    return Step(
+        "velocity_step",
+        "Outwards: reach, velocity, momentum of the disk, loads without inertia; power in.",
+        ("q", "u", "tension", "segments", "disks", "chain"),
+        trace,
+        results={"input_power": (0.0, symbol("input_power") + trace.let("added_input_power", power))},
+        carried=frame | pose | motion | ends | ends_motion,
+    )
+
+
+def momentum_step(forces: SceneForces) -> Step:
+    """Inwards: the momentum p = dT/du of a segment's coordinates, and dT/dq."""
+    trace = Trace()
+    reach = reach_of(forces)
+    dofs = range(len(forces.segment.coordinates))
+    carried = sp.Matrix([symbol(name) for name in ("momentum_x", "momentum_y", "angular_momentum")])
+    whole = trace.let("beyond", carried + sp.Matrix([symbol(f"disk_momentum_{row}") for row in range(3)]))
+    linear, far = whole[:2, 0], sp.Matrix([symbol("far_velocity_0"), symbol("far_velocity_1")])
+    own = [
+        value if value.is_Atom else symbol(f"segment_momentum_{a}")
+        for a, value in enumerate(_momentum(forces.on_segment, forces.segment))
+    ]
+    turning = trace.let("turning", -linear.dot(turned(far)))
+    partial_rate = sp.Matrix(2, len(dofs), lambda axis, a: symbol(f"partial_rate_{axis}{a}"))
+    at_near: Any = reach.transition.T * whole
+    return Step(
+        "momentum_step",
+        "Inwards: momentum of the segment's coordinates, and the slope of the kinetic energy by them.",
+        ("chain", "momentum", "slope"),
+        trace,
+        carried={str(name): (0.0, value) for name, value in zip(carried, at_near, strict=True)},
+        stores={
+            "momentum": list(reach.partials.T * whole + sp.Matrix(own)),
+            "slope": list(partial_rate.T * linear + reach.turn_by_q.T * turning),
+        },
+    )
