@@ -36,9 +36,11 @@ contracts: $(VENV)/dev
 
 benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 	$(BIN)/python benchmarks/equilibria.py
+	$(BIN)/python benchmarks/newton_iteration.py
 	$(BIN)/python benchmarks/integrators.py
 	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/warm_run.py
+	$(BIN)/python benchmarks/energy.py
 
 pictures: $(VENV)/dev ## Make the pictures of the README again.
 	$(BIN)/python docs/pictures.py

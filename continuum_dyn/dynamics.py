@@ -18,8 +18,13 @@ LEDGER = ("kinetic_energy", "elastic_energy", "gravity_energy", "input_power", "
 
 @dataclass(frozen=True)
 class Observation:
-    """What follows from states: arrays over samples and disks; ``ledger`` by glossary name."""
+    """What follows from states: arrays over samples and disks; ``ledger`` by glossary name.
 
+    ``coordinates`` and ``rates`` have shape (samples, segments, dofs).
+    """
+
+    coordinates: np.ndarray
+    rates: np.ndarray
     disk_x: np.ndarray
     disk_y: np.ndarray
     disk_theta: np.ndarray
@@ -70,7 +75,7 @@ class Dynamics:
         alone = [self.kernel.clearance_sweep(*span) for span in zip(q, segments, strict=True)]
         return int(np.argmin(alone)) + 1
 
-    @property
+    @cached_property
     def frequency(self) -> float:
         """Scale of the arm's lowest frequency, sqrt((EJ / L) / (m n L^2)), rad/s; 1 without bending."""
         arm = self.scene.arm
@@ -120,6 +125,8 @@ class Dynamics:
         self.kernel.observe(q, u, tension, self.segments, self.disks, pose, velocity, ledger)
         disk_x, disk_y, disk_theta = np.moveaxis(pose[:, self.scene.arm.disk_nodes], -1, 0)
         return Observation(
+            coordinates=q,
+            rates=u,
             disk_x=disk_x,
             disk_y=disk_y,
             disk_theta=disk_theta,

@@ -65,10 +65,10 @@ def trajectory_of(
 ) -> Trajectory:
     """The trajectory of states (samples, size) at those times under tensions (samples, cables)."""
     arm = dynamics.scene.arm
-    q, u = dynamics.split(states)
+    seen = dynamics.observe(states, tension)
+    q, u = seen.coordinates, seen.rates
     extends = dynamics.dofs == 2
     elongation = q[:, :, 1] if extends else None
-    seen = dynamics.observe(states, tension)
     return Trajectory(
         time=times,
         tension=tension,

@@ -106,8 +106,8 @@ class ChainInterpolant(DenseOutput):
     def _call_impl(self, t: np.ndarray) -> np.ndarray:
         at = np.atleast_1d(t)
         order = np.argsort(at, kind="stable")
-        found = np.empty((at.size, self.records[1].shape[1]))
-        self.kernel.interpolate(at[order], self.records, found)
-        states = np.empty_like(found)
-        states[order] = found
+        states = np.empty((at.size, self.records[1].shape[1]))
+        self.kernel.interpolate(at[order], self.records, 0, states)
+        if (np.diff(order) != 1).any():
+            states[order] = states.copy()
         return states[0] if np.ndim(t) == 0 else states.T

@@ -39,13 +39,33 @@ SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
 
 
-def add_weighted(h: float, weights: np.ndarray, parts: np.ndarray, count: int, total: np.ndarray) -> None:
-    """Add h times the weighted sum of the first ``count`` rows of ``parts``, (count, size), to ``total``."""
-    for j in range(count):
-        factor = h * weights[j]
-        if factor != 0.0:
-            for m in range(total.size):
-                total[m] += factor * parts[j, m]
+def prepare(
+    s: int,
+    h: float,
+    y: np.ndarray,
+    a: np.ndarray,
+    predictor: np.ndarray,
+    stage_u: np.ndarray,
+    stage_w: np.ndarray,
+    known_q: np.ndarray,
+    known_u: np.ndarray,
+) -> None:
+    """What stage s knows from the stages before it, and the prediction of its w; rows of all coordinates.
+
+    One stage after the other, so that the inner loops run on vectors.
+    """
+    size = known_q.size
+    for m in range(size):
+        known_q[m], known_u[m], stage_w[s, m] = y[m], y[size + m], 0.0
+    for j in range(s):
+        part, weight = h * a[s, j], predictor[s, j]
+        if part != 0.0:
+            for m in range(size):
+                known_q[m] += part * stage_u[j, m]
+                known_u[m] += part * stage_w[j, m]
+        if weight != 0.0:
+            for m in range(size):
+                stage_w[s, m] += weight * stage_w[j, m]
 
 
 def solve_stage(
@@ -127,10 +147,7 @@ def step_once(
     flat_u, flat_w = stage_u.reshape((count, size)), stage_w.reshape((count, size))
     iterations = 0
     for s in range(1, count):
-        known_q[:], known_u[:], flat_w[s] = y[:size], y[size : 2 * size], 0.0
-        add_weighted(h, a[s], flat_u, s, known_q)
-        add_weighted(h, a[s], flat_w, s, known_u)
-        add_weighted(1.0, predictor[s], flat_w, s, flat_w[s])
+        prepare(s, h, y, a, predictor, flat_u, flat_w, known_q, known_u)
         tension_at(t + c[s] * h, arm[0], tension)
         took, rate, next_power[0], next_power[1] = solve_stage(
             work[3],
@@ -150,8 +167,10 @@ def step_once(
     last = count - 1
     next_y[:size] = stage_q[last].ravel()
     next_y[size : 2 * size] = stage_u[last].ravel()
-    error[:] = 0.0
-    add_weighted(h, error_weights, flat_u, count, error)
+    for m in range(size):
+        error[m] = 0.0
+        for s in range(count):
+            error[m] += h * error_weights[s] * flat_u[s, m]
     return displacement(chain, work[5]), rate, iterations
 
 
@@ -214,7 +233,7 @@ def advance(
         last_error = error
         h = max(h, step) if reaches and growth > 1.0 else step * min(MOST_GROWTH, max(MOST_SHRINK, growth))
         states[taken + 1, 2 * n * dofs :] = 0.0
-        bad = clearance_sweep(stages[0][count - 1], arm[1]) <= 0.0 or not np.isfinite(states[taken + 1]).all()
+        bad = clearance_sweep(stages[0][count - 1], arm[1]) <= 0.0 or not finite(states[taken + 1])
         if bad and taken > 0:
             return NO_ROOM, taken, step, rate, rejected, iterations
         taken += 1
@@ -224,6 +243,14 @@ def advance(
         if bad:
             return NO_ROOM, taken, h, rate, rejected, iterations
     return (FINISHED if times[taken] >= t_bound else GOING_ON), taken, h, rate, rejected, iterations
+
+
+def finite(row: np.ndarray) -> bool:
+    """Whether every number of a row is finite; makes no array of its own."""
+    good = True
+    for value in row:
+        good = good and math.isfinite(value)
+    return good
 
 
 def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, work: np.ndarray) -> None:
@@ -240,14 +267,10 @@ def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, wor
     h = times[row] - times[row - 1]
     middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / math.sqrt(5.0)
     at = np.array([middle - apart, middle + apart])
-    step = (
-        times[row - 1 : row + 1],
-        states[row - 1 : row + 1],
-        accelerations[row - 1 : row + 1],
-        powers[row - 1 : row + 1],
-    )
-    interpolate(at, step, between)
-    states[row, 2 * size :] = states[row - 1, 2 * size :] + h / 12.0 * (powers[row - 1] + powers[row])
+    interpolate(at, records, row - 1, between)
+    for part in range(2):
+        ends = powers[row - 1, part] + powers[row, part]
+        states[row, 2 * size + part] = states[row - 1, 2 * size + part] + h / 12.0 * ends
     for m in range(2):
         tension_at(at[m], pieces, tension)
         q, u = between[m, :size].reshape((n, dofs)), between[m, size : 2 * size].reshape((n, dofs))
@@ -272,8 +295,8 @@ def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") ->
     return displacement(chain, accelerations[0])
 
 
-def interpolate(at: np.ndarray, records: "Records", found: np.ndarray) -> None:
-    """States at the increasing times ``at`` into ``found``, (len(at), size).
+def interpolate(at: np.ndarray, records: "Records", row: int, found: np.ndarray) -> None:
+    """States at the increasing times ``at``, from the step after ``row`` on, into ``found``, (len(at), size).
 
     Quintic Hermite for coordinates, from their rates and accelerations at both ends of a step; its
     derivative for rates; cubic for the two integrals of powers.
@@ -281,7 +304,6 @@ def interpolate(at: np.ndarray, records: "Records", found: np.ndarray) -> None:
     times, states, accelerations, powers = records
     _, n, dofs = accelerations.shape
     size = n * dofs
-    row = 0
     for m in range(len(at)):
         while row < len(times) - 2 and at[m] > times[row + 1]:
             row += 1
