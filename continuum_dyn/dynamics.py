@@ -80,8 +80,8 @@ class Dynamics:
         """Scale of the arm's lowest frequency, sqrt((EJ / L) / (m n L^2)), rad/s; 1 without bending."""
         arm = self.scene.arm
         columns = arm.segment_columns()
-        stiffness = float(columns.get("bending_stiffness", 0.0)) / arm.total_length
-        inertia = float(np.sum(arm.node_columns()["node_mass"])) * arm.total_length**2
+        stiffness = float(np.mean(columns.get("bending_stiffness", 0.0))) / arm.total_length
+        inertia = float(arm.node_columns()["node_mass"].sum()) * arm.total_length**2
         return float(np.sqrt(stiffness / inertia)) if stiffness else 1.0
 
     def scales(self) -> np.ndarray:
@@ -91,7 +91,8 @@ class Dynamics:
         stiffness over the rest length. Shape of the state.
         """
         arm = self.scene.arm
-        energy = float(arm.segment_columns().get("bending_stiffness", arm.rest_length)) / arm.rest_length
+        stiffness = arm.segment_columns().get("bending_stiffness", arm.rest_lengths)
+        energy = float(np.mean(stiffness)) / arm.rest_length
         q = np.tile([1.0, arm.rest_length][: self.dofs], arm.segments)
         return np.concatenate([q, self.frequency * q, np.full(2, energy)])
 

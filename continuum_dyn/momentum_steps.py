@@ -78,15 +78,15 @@ def velocity_step(forces: SceneForces) -> Step:
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
     motion, moving = far_velocity(trace, forces, reach)
-    ends, at_span = span_ends(trace, forces, frame, at_disk)
-    ends_motion, spanning = span_velocity(trace, forces, moving)
-    at_disk, at_span = at_disk | moving, at_span | spanning
-    name_forces(trace, forces, at_disk, at_span)
+    ends, at = span_ends(trace, forces, frame, at_disk)
+    ends_motion, at_start = span_velocity(trace, forces)
+    at |= moving | at_start
+    name_forces(trace, forces, at)
     _name_partial_rates(trace, forces, reach)
     for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
-        trace.name(f"disk_momentum_{row}", placed(value, at_disk))
+        trace.name(f"disk_momentum_{row}", placed(value, at))
     trace.let("segment_momentum", _momentum(forces.on_segment, forces.segment))
-    power = booked(forces, "powers", "input_power", at_disk, at_span)
+    power = booked(forces, "powers", "input_power", at)
     return Step(
         "velocity_step",
         "Outwards: reach, velocity, momentum of the disk, loads without inertia; power in.",

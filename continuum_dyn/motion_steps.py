@@ -72,28 +72,19 @@ def _far_acceleration(
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
 
-def span_velocity(
-    trace: Trace, forces: SceneForces, moving: dict[sp.Symbol, Any]
-) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
-    """Velocities of the span's two ends: what is carried on, and what the span's symbols stand for."""
-    if forces.span is None:
-        return {}, {}
-    carried, at_span = {}, dict(moving)
-    for rate in forces.span.rates[3:]:
+def span_velocity(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    """Velocity of the span's start: what is carried on, and what its symbols stand for."""
+    carried, at_start = {}, {}
+    for rate in [] if forces.span is None else forces.span.rates[3:]:
         name = rate.name.removeprefix("span_")
-        at_start = trace.let(f"from_{name}", from_start(symbol(f"near_{name}"), rate))
-        carried[rate.name] = (0.0, at_start)
-        at_span[rate] = at_start
-    return carried, at_span
+        at_start[rate] = trace.let(f"from_{name}", from_start(symbol(f"near_{name}"), rate))
+        carried[rate.name] = (0.0, at_start[rate])
+    return carried, at_start
 
 
-def booked(forces: SceneForces, kind: str, account: str, at_disk: Any, at_span: Any) -> Any:
+def booked(forces: SceneForces, kind: str, account: str, at: dict[Any, Any]) -> Any:
     """One line of the ledger: what segment, disk and span put into it."""
-    total = getattr(forces.on_segment, kind).get(account, 0)
-    total += placed(getattr(forces.on_disk, kind).get(account, 0), at_disk)
-    if forces.on_span is not None:
-        total += placed(getattr(forces.on_span, kind).get(account, 0), at_span)
-    return total
+    return sum(placed(getattr(part, kind).get(account, 0), at) for part in forces.places.values())
 
 
 def motion_step(forces: SceneForces) -> Step:
@@ -104,13 +95,11 @@ def motion_step(forces: SceneForces) -> Step:
     pose, at_disk = far_pose(trace, forces, reach)
     motion, moving = far_velocity(trace, forces, reach)
     push, pushed = _far_acceleration(trace, forces, reach)
-    ends, at_span = span_ends(trace, forces, frame, at_disk)
-    ends_motion, spanning = span_velocity(trace, forces, moving)
-    at_disk, at_span = at_disk | moving | pushed, at_span | spanning
-    name_forces(trace, forces, at_disk, at_span)
-    powers = {
-        name: trace.let(f"added_{name}", booked(forces, "powers", name, at_disk, at_span)) for name in POWERS
-    }
+    ends, at = span_ends(trace, forces, frame, at_disk)
+    ends_motion, at_start = span_velocity(trace, forces)
+    at |= moving | pushed | at_start
+    name_forces(trace, forces, at)
+    powers = {name: trace.let(f"added_{name}", booked(forces, "powers", name, at)) for name in POWERS}
     return Step(
         "motion_step",
         "Outwards: reach, velocity, acceleration, loads; power in and power dissipated.",
@@ -176,11 +165,11 @@ def observe_motion_step(forces: SceneForces) -> Step:
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
     motion, moving = far_velocity(trace, forces, reach)
-    ends, at_span = span_ends(trace, forces, frame, at_disk)
-    ends_motion, spanning = span_velocity(trace, forces, moving)
-    at_disk, at_span = at_disk | moving, at_span | spanning
+    ends, at = span_ends(trace, forces, frame, at_disk)
+    ends_motion, at_start = span_velocity(trace, forces)
+    at |= moving | at_start
     accounts = {
-        name: booked(forces, kind, name, at_disk, at_span)
+        name: booked(forces, kind, name, at)
         for kind, names in (("energies", ENERGIES), ("powers", POWERS))
         for name in names
     }
@@ -194,7 +183,7 @@ def observe_motion_step(forces: SceneForces) -> Step:
         },
         carried=frame | pose | motion | ends | ends_motion,
         stores={
-            "pose": [at_disk[coordinate] for coordinate in forces.disk.coordinates],
-            "velocity": [at_disk[rate] for rate in forces.disk.rates],
+            "pose": [at[coordinate] for coordinate in forces.disk.coordinates],
+            "velocity": [at[rate] for rate in forces.disk.rates],
         },
     )

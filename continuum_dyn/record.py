@@ -182,11 +182,15 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
     group.attrs.update(numbers)
     cables = arm.cables[: scenario.scene.cables]
     _write_scale(group, "cable", _names(scenario))
-    for name, values in {
-        "hole_offset": [cable.hole_offset for cable in cables],
-        "anchor": [cable.anchor or arm.disks for cable in cables],
-    }.items():
-        _write_dataset(group, name, np.array(values), ["cable"])
+    _write_scale(group, "hole", np.arange(arm.disks + 1))
+    _write_scale(group, "disk", np.arange(1, arm.disks + 1))
+    offsets = np.array([cable.holes(arm.disks) for cable in cables]).reshape(-1, arm.disks + 1)
+    _write_dataset(group, "hole_offset", offsets, ["cable", "hole"])
+    anchors = np.array([cable.anchor or arm.disks for cable in cables], dtype=int)
+    _write_dataset(group, "anchor", anchors, ["cable"])
+    for name, values in vars(arm.each).items():
+        if values is not None:
+            _write_dataset(group, f"{name}", np.array(values), ["disk"])
 
 
 def _points(run: Run) -> tuple[np.ndarray, list[Equilibrium], np.ndarray | None]:

@@ -25,7 +25,7 @@ from continuum_dyn.study import (
     Solver,
     StepResponseStudy,
 )
-from statics.arm import PRESETS, Arm, Cable, DiskNumber
+from statics.arm import PRESETS, Arm, Cable, DiskNumber, Each, PerDisk
 from statics.checked import STRICT, NonNegative, Positive
 from statics.effects import Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
@@ -69,21 +69,36 @@ Tension = Annotated[
 ]
 
 
+def _number_kind(value: Any) -> str:
+    return "list" if isinstance(value, list) else "number"
+
+
+PositiveEach = Annotated[
+    Annotated[Positive, Tag("number")] | Annotated[PerDisk, Tag("list")], Discriminator(_number_kind)
+]
+NumberEach = Annotated[
+    Annotated[float, Tag("number")]
+    | Annotated[Annotated[tuple[float, ...], Field(strict=False)], Tag("list")],
+    Discriminator(_number_kind),
+]
+"""One number, or a list of them: one for each disk."""
+
+
 class ArmTable(BaseModel):
     """[arm]: what is given beats the preset."""
 
     model_config = STRICT
     preset: str | None = None
     disks: DiskNumber | None = None
-    disk_spacing: Positive | None = None
-    youngs_modulus: Positive | None = None
-    core_radius: Positive | None = None
-    area: Positive | None = None
-    second_moment: Positive | None = None
-    disk_mass: Positive | None = None
-    disk_inertia: Positive | None = None
+    disk_spacing: PositiveEach | None = None
+    youngs_modulus: PositiveEach | None = None
+    core_radius: PositiveEach | None = None
+    area: PositiveEach | None = None
+    second_moment: PositiveEach | None = None
+    disk_mass: PositiveEach | None = None
+    disk_inertia: PositiveEach | None = None
     core_density: Positive | None = None
-    reference_curvature: float | None = None
+    reference_curvature: NumberEach | None = None
     subsegments: int | str | None = None
 
 
@@ -92,7 +107,7 @@ class CableTable(BaseModel):
 
     model_config = STRICT
     name: Annotated[str, Field(min_length=1, max_length=40)] | None = None
-    hole_offset: float
+    hole_offset: NumberEach
     anchor: DiskNumber | None = None
     tension: Tension
 
@@ -216,7 +231,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
 
 
 def _arm(file: ScenarioFile) -> Arm:
-    given = {name: value for name, value in file.arm.model_dump().items() if value is not None}
+    given = {name: value for name, value in file.arm if value is not None}
     preset, _ = given.pop("preset", None), given.pop("subsegments", None)
     if preset is not None and preset not in PRESETS:
         raise InputError(f"[arm] unknown preset '{preset}'.{did_you_mean(preset, PRESETS)}")
@@ -230,7 +245,12 @@ def _arm(file: ScenarioFile) -> Arm:
         Cable(cable.name or f"cable_{number}", cable.hole_offset, cable.anchor)
         for number, cable in enumerate(file.cables, start=1)
     )
-    return Arm(**numbers, subsegments=_subsegments(file.arm.subsegments), cables=cables)
+    lists = {name: values for name, values in numbers.items() if isinstance(values, tuple)}
+    if isinstance(numbers["disk_spacing"], tuple):
+        numbers["disk_spacing"] = sum(lists["disk_spacing"]) / len(lists["disk_spacing"])
+    single = {name: value for name, value in numbers.items() if not isinstance(value, tuple)}
+    subsegments = _subsegments(file.arm.subsegments)
+    return Arm(**single, subsegments=subsegments, each=Each(**lists), cables=cables)
 
 
 def _subsegments(given: int | str | None) -> int:
@@ -250,7 +270,10 @@ def _with_radius(given: dict[str, Any]) -> dict[str, Any]:
         raise InputError(f"[arm] core_radius already sets {' and '.join(both)}. Give one or the other.")
     radius = given["core_radius"]
     rest = {name: value for name, value in given.items() if name != "core_radius"}
-    return {**rest, **Arm.round_core(radius)}
+    if not isinstance(radius, tuple):
+        return {**rest, **Arm.round_core(radius)}
+    cores = [Arm.round_core(each) for each in radius]
+    return {**rest, **{name: tuple(core[name] for core in cores) for name in cores[0]}}
 
 
 def _ramp_or_profile(cable: CableTable, path: Path, is_ramp: bool) -> Any:

@@ -1,6 +1,6 @@
 """Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
 
-from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable
+from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable, Each
 from statics.effects import Bending, Cables, DiskLoad, DiskLoads, Extension, Gravity
 from statics.effects.cables import disk_loads
 from statics.equilibria import Equilibrium, StaticSolver, equilibrium, tension_ramp
@@ -17,6 +17,7 @@ __all__ = [
     "ContinuumError",
     "DiskLoad",
     "DiskLoads",
+    "Each",
     "Equilibrium",
     "Extension",
     "Gravity",

@@ -35,11 +35,43 @@ Subsegments = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
 
 @dataclass(frozen=True, config=STRICT)
 class Cable:
-    """A cable through a hole of every disk up to its anchor; ``anchor=None`` is the last disk."""
+    """A cable through a hole of every disk up to its anchor; ``anchor=None`` is the last disk.
+
+    ``hole_offset`` (m) is one number, or one for the base and each disk up to the anchor.
+    """
 
     name: str
-    hole_offset: float
+    hole_offset: float | Annotated[tuple[float, ...], Field(strict=False)]
     anchor: DiskNumber | None = None
+
+    @property
+    def tapered(self) -> bool:
+        """Whether its holes do not all have the same offset."""
+        return isinstance(self.hole_offset, tuple) and len(set(self.hole_offset)) > 1
+
+    def holes(self, disks: int) -> np.ndarray:
+        """Offsets of its holes in the base and in each disk, shape (disks + 1,), m; the last one goes on."""
+        given = np.atleast_1d(np.asarray(self.hole_offset, dtype=float))
+        return np.pad(given, (0, max(0, disks + 1 - given.size)), mode="edge")
+
+
+PerDisk = Annotated[tuple[Positive, ...], Field(strict=False)]
+
+
+@dataclass(frozen=True, config=STRICT)
+class Each:
+    """Numbers of an arm whose disks, or the cores before them, differ: one for each disk, from the base on.
+
+    What is given here beats the arm's one number of that name.
+    """
+
+    disk_spacing: PerDisk | None = None
+    youngs_modulus: PerDisk | None = None
+    area: PerDisk | None = None
+    second_moment: PerDisk | None = None
+    disk_mass: PerDisk | None = None
+    disk_inertia: PerDisk | None = None
+    reference_curvature: Annotated[tuple[float, ...], Field(strict=False)] | None = None
 
 
 RONE2012: dict[str, Any] = {
@@ -60,7 +92,7 @@ RONE2012_HOLE_OFFSET = 0.008
 
 @dataclass(frozen=True, config=STRICT)
 class Arm:
-    """A planar arm of equal segments. A number may stay None where no effect of the scene needs it.
+    """A planar arm. A number may stay None where no effect of the scene needs it; ``each`` has what differs.
 
     ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` puts
     the core's own mass on the nodes, half of each segment's on either end; ``disk_mass`` is then a disk's
@@ -78,6 +110,7 @@ class Arm:
     core_density: Positive | None = None
     reference_curvature: float = 0.0
     subsegments: Subsegments = 1
+    each: Each = field(default=Each())
     cables: Annotated[tuple[Cable, ...], Field(strict=False)] = field(default=())
 
     def __post_init__(self) -> None:
@@ -86,8 +119,11 @@ class Arm:
                 f"{self.disks} disks with subsegments = {self.subsegments} are {self.segments} segments. "
                 f"Allowed: {MAX_SEGMENTS}."
             )
-        if self.core_density is not None and self.area is None:
+        if self.core_density is not None and not self.knows("area"):
             raise InputError("core_density needs the arm's area, which is not given. Give area.")
+        for name, values in vars(self.each).items():
+            if values is not None and len(values) != self.disks:
+                raise InputError(f"{name}: {len(values)} numbers for {self.disks} disks. Give one for each.")
         for cable in self.cables:
             self._check(cable)
         for name, count in Counter(cable.name for cable in self.cables).items():
@@ -100,10 +136,18 @@ class Arm:
                 f"cable '{cable.name}': anchor {cable.anchor} is beyond the arm. "
                 f"Allowed: disks 1 to {self.disks}."
             )
-        if abs(self.reference_curvature * cable.hole_offset) >= 1:
+        last = cable.anchor or self.disks
+        if isinstance(cable.hole_offset, tuple) and len(cable.hole_offset) != last + 1:
+            raise InputError(
+                f"cable '{cable.name}': {len(cable.hole_offset)} hole_offsets. Give one number, or "
+                f"{last + 1}: for the base and each of the {last} disks up to the anchor."
+            )
+        holes = cable.holes(self.disks)
+        across = self.per_disk("reference_curvature") * (holes[1:] + holes[:-1]) / 2
+        if (np.abs(across) >= 1).any():
             raise InputError(
                 f"cable '{cable.name}': reference_curvature x hole_offset is "
-                f"{self.reference_curvature * cable.hole_offset:g}, so its holes meet in the unloaded arm. "
+                f"{across[np.abs(across).argmax()]:g}, so its holes meet in the unloaded arm. "
                 "Allowed: between -1 and 1. Lessen reference_curvature or hole_offset."
             )
 
@@ -122,10 +166,24 @@ class Arm:
         """Area and second moment of a round core of that radius (m), as arguments of ``Arm``."""
         return {"area": pi * radius**2, "second_moment": pi * radius**4 / 4}
 
+    def knows(self, name: str) -> bool:
+        """Whether the number of that name is given, once or for each disk."""
+        return getattr(self, name) is not None or getattr(self.each, name, None) is not None
+
+    def per_disk(self, name: str) -> np.ndarray:
+        """A number that is known, for each disk or the core before it, shape (disks,)."""
+        given = getattr(self.each, name)
+        return np.full(self.disks, getattr(self, name) if given is None else given, dtype=float)
+
     @property
     def rest_length(self) -> float:
-        """Undeformed length of one segment, L0, m."""
-        return self.disk_spacing / self.subsegments
+        """Undeformed length of a segment, in the mean, m."""
+        return self.total_length / self.segments
+
+    @property
+    def rest_lengths(self) -> np.ndarray:
+        """Undeformed length L0 of each segment, shape (segments,), m."""
+        return np.repeat(self.per_disk("disk_spacing") / self.subsegments, self.subsegments)
 
     @property
     def segments(self) -> int:
@@ -140,38 +198,48 @@ class Arm:
     @property
     def total_length(self) -> float:
         """Undeformed length of the whole arm, m."""
-        return self.disks * self.disk_spacing
+        return float(self.per_disk("disk_spacing").sum())
 
     @property
     def cable_names(self) -> tuple[str, ...]:
         """Names of the cables, in the order of the tensions."""
         return tuple(cable.name for cable in self.cables)
 
-    def segment_columns(self) -> dict[str, np.ndarray | float]:
-        """What the arm knows of each segment, by glossary name: scalars, or shape (segments,)."""
-        columns: dict[str, np.ndarray | float | None] = {
-            "rest_length": self.rest_length,
-            "disk_spacing": self.disk_spacing,
-            "bending_stiffness": _product(self.youngs_modulus, self.second_moment),
-            "axial_stiffness": _product(self.youngs_modulus, self.area),
-            "reference_curvature": self.reference_curvature,
-        }
+    @property
+    def tapered(self) -> bool:
+        """Whether some cable's holes differ in their offsets."""
+        return any(cable.tapered for cable in self.cables)
+
+    def segment_columns(self) -> dict[str, np.ndarray]:
+        """What the arm knows of each segment, by glossary name, shape (segments,)."""
+        columns = {"rest_length": self.rest_lengths}
+        columns["disk_spacing"] = self._along("disk_spacing")
+        columns["reference_curvature"] = self._along("reference_curvature")
+        for stiffness, of_section in (("bending_stiffness", "second_moment"), ("axial_stiffness", "area")):
+            if self.knows("youngs_modulus") and self.knows(of_section):
+                columns[stiffness] = self._along("youngs_modulus") * self._along(of_section)
         disk, is_disk = np.divmod(np.arange(1, self.segments + 1), self.subsegments)
         columns["span_start"] = np.roll(is_disk == 0, 1).astype(float)
         for number, cable in enumerate(self.cables, start=1):
-            columns[f"hole_offset_{number}"] = cable.hole_offset
+            holes = cable.holes(self.disks)
+            columns[f"hole_offset_{number}"] = np.repeat(holes[1:], self.subsegments)
+            columns[f"near_hole_offset_{number}"] = np.repeat(holes[:-1], self.subsegments)
             passes = (is_disk == 0) & (disk <= (cable.anchor or self.disks))
             columns[f"cable_passes_{number}"] = passes.astype(float)
-        return _known(columns)
+        return columns
 
-    def node_columns(self) -> dict[str, np.ndarray | float]:
+    def _along(self, name: str) -> np.ndarray:
+        """A number of the core before each disk, for each segment, shape (segments,)."""
+        return np.repeat(self.per_disk(name), self.subsegments)
+
+    def node_columns(self) -> dict[str, np.ndarray]:
         """What the arm knows of each node, by glossary name, shape (segments,)."""
-        columns: dict[str, np.ndarray | float | None] = {"node_mass": None, "node_inertia": None}
-        if self.disk_mass is not None:
-            columns["node_mass"] = self.at_disks(self.disk_mass) + self._core_on_nodes()
-        if self.disk_inertia is not None:
-            columns["node_inertia"] = self.at_disks(self.disk_inertia)
-        return _known(columns)
+        columns = {}
+        if self.knows("disk_mass"):
+            columns["node_mass"] = self.at_disks(self.per_disk("disk_mass")) + self._core_on_nodes()
+        if self.knows("disk_inertia"):
+            columns["node_inertia"] = self.at_disks(self.per_disk("disk_inertia"))
+        return columns
 
     @property
     def massless_nodes(self) -> bool:
@@ -184,18 +252,9 @@ class Arm:
         spread[self.disk_nodes] = values
         return spread
 
-    def _core_on_nodes(self) -> np.ndarray | float:
-        """The core's own mass, half of a segment's on either end; the base carries the first half."""
-        if self.core_density is None or self.area is None:
-            return 0.0
-        mass = np.full(self.segments, self.core_density * self.area * self.rest_length)
-        mass[-1] /= 2
-        return mass
-
-
-def _product(first: float | None, second: float | None) -> float | None:
-    return None if first is None or second is None else first * second
-
-
-def _known(columns: dict[str, np.ndarray | float | None]) -> dict[str, np.ndarray | float]:
-    return {name: value for name, value in columns.items() if value is not None}
+    def _core_on_nodes(self) -> np.ndarray:
+        """The core's own mass, half of a segment's on either end, shape (segments,), kg."""
+        if self.core_density is None:
+            return np.zeros(self.segments)
+        mass = self.core_density * self._along("area") * self.rest_lengths
+        return (mass + np.append(mass[1:], 0.0)) / 2

@@ -70,7 +70,7 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
     effects = [effect.name for effect in scene.effects]
-    structure = (recipe.kind, scene.coordinates, scene.cables, scene.spans, effects)
+    structure = (recipe.kind, scene.coordinates, scene.cables, scene.spans, scene.tapered, effects)
     sources = [_digest(file, file.stat().st_mtime_ns) for file in recipe.sources]
     sources += [_effect_digest(effect) for effect in scene.effects]
     return hashlib.sha256(repr((structure, _versions(), sources)).encode()).hexdigest()[:24]

@@ -124,7 +124,7 @@ class StaticSolver:
 
 def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, np.ndarray]:
     """Curvature (1/m) and length (m) of segments, the paper's k and L, from their coordinates."""
-    length = arm.rest_length + (np.zeros_like(bend_angle) if elongation is None else elongation)
+    length = arm.rest_lengths + (np.zeros_like(bend_angle) if elongation is None else elongation)
     return {"curvature": bend_angle / length, "length": length}
 
 

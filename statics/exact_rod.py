@@ -120,6 +120,8 @@ def _check(scene: Scene) -> None:
         raise InputError(
             f"the exact rod does not know: {', '.join(unknown)}. Known: {', '.join(KNOWN_EFFECTS)}."
         )
+    if scene.arm.tapered or any(values is not None for values in vars(scene.arm.each).values()):
+        raise InputError("the exact rod knows arms of equal segments only.")
     if scene.arm.core_density is not None:
         raise InputError("the exact rod has no mass of its own: it does not know core_density.")
     if not scene.has(Bending.name):
@@ -136,7 +138,7 @@ def _rod(scene: Scene, tension: np.ndarray) -> _Rod:
     length = arm.disk_spacing / parts
     force = bending_stiffness / length**2
     cables = tuple(
-        _Cable(cable.name, cable.hole_offset / length, cable.anchor or arm.disks, tau / force)
+        _Cable(cable.name, cable.holes(0)[0] / length, cable.anchor or arm.disks, tau / force)
         for cable, tau in zip(arm.cables if tension.size else (), tension, strict=True)
     )
     return _Rod(

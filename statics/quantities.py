@@ -45,6 +45,8 @@ span_start           | -     | 1      | 1 on segments that start at a disk or th
 bending_stiffness    | EJ    | N m^2  | E J of the core
 axial_stiffness      | EA    | N      | E A of the core
 hole_offset          | r     | m      | cable hole's place along the disk's y axis
+near_hole_offset     | r'    | m      | that of the same cable's hole before it
+hole                 | -     | 1      | number of the disk that a hole is in, 0 for the base
 anchor               | -     | 1      | number of the disk where a cable ends
 cable_passes         | b     | 1      | 1 on segments whose end has a hole that a cable passes, 0 elsewhere
 tension              | tau   | N      | tension of a cable

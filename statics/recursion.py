@@ -21,7 +21,7 @@ from typing import Any
 
 import sympy as sp
 
-from statics.segment import symbol
+from statics.segment import CableSymbols, symbol
 from statics.trace import Trace
 from statics.virtual_work import SceneForces
 
@@ -134,33 +134,40 @@ def from_start(near: Any, before: Any) -> Any:
 def span_ends(
     trace: Trace, forces: SceneForces, frame: dict[str, Any], at_disk: dict[sp.Symbol, Any]
 ) -> tuple[dict[str, Any], dict[Any, Any]]:
-    """Poses of the span's two ends: what is carried on, and what the span's symbols stand for."""
+    """Poses of the span's two ends: what is carried on, and what all symbols of a step stand for."""
+    carried, at = {}, dict(at_disk)
     if forces.span is None:
-        return {}, {}
+        return carried, at | _cable_lengths(trace, forces.segment.cables, {})
     trace.name("starts_span", symbol("span_start"))
-    carried, at_span = {}, dict(at_disk)
     for name, start in (("x", 0.0), ("y", 0.0), ("theta", 0.0), ("cosine", 1.0), ("sine", 0.0)):
         near = symbol(name if name in frame else f"near_{name}")
         at_start = trace.let(f"from_{name}", from_start(near, symbol(f"span_{name}")))
         carried[f"span_{name}"] = (start, at_start)
-        at_span[symbol(f"span_{name}")] = at_start
+        at[symbol(f"span_{name}")] = at_start
     theta, span_theta = symbol("theta"), symbol("span_theta")
     turns = {sp.cos(theta): frame["cosine"][1], sp.sin(theta): frame["sine"][1]}
     turns |= {sp.cos(span_theta): carried["span_cosine"][1], sp.sin(span_theta): carried["span_sine"][1]}
-    for number, cable in enumerate(forces.span.cables, start=1):
+    return carried, turns | at | _cable_lengths(trace, forces.span.cables, turns | at)
+
+
+def _cable_lengths(trace: Trace, cables: list[CableSymbols], at: dict[Any, Any]) -> dict[Any, Any]:
+    """Names for those lengths that are roots, and what their powers, which forces hold, stand for."""
+    known: dict[Any, Any] = {}
+    for number, cable in enumerate(cables, start=1):
         squared = cable.length**2
-        value = trace.let(f"squared_{number}", squared.xreplace(turns | at_span))
-        length = trace.let(f"cable_length_{number}", sp.sqrt(value))
-        at_span |= {squared ** sp.Rational(power, 2): length**power for power in (1, -1, -3)}
-    return carried, turns | at_span
+        if cable.length == sp.sqrt(squared) and cable.length.is_Pow:
+            value = trace.let(f"squared_{number}", squared.xreplace(at))
+            length = trace.let(f"cable_length_{number}", sp.sqrt(value))
+            known |= {squared ** sp.Rational(power, 2): length**power for power in (1, -1, -3)}
+    return known
 
 
-def _smallest(trace: Trace, forces: SceneForces, at_span: dict[Any, Any]) -> Any:
+def _smallest(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> Any:
     """Smallest so far of length and hole-to-hole lengths over L0; cables that do not pass are left out."""
     span, rest = forces.span or forces.segment, symbol("rest_length")
     apart = rest if forces.span is None else symbol("disk_spacing")
     ratios = [
-        sp.Max(placed(cable.gap, at_span) / apart, 1 - symbol(f"cable_passes_{number}"))
+        sp.Max(placed(cable.gap, at) / apart, 1 - symbol(f"cable_passes_{number}"))
         for number, cable in enumerate(span.cables, start=1)
     ]
     if forces.segment.elongation != 0:
@@ -173,13 +180,13 @@ def clearance_step(forces: SceneForces) -> Step:
     trace = Trace()
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach_of(forces, trace))
-    ends, at_span = span_ends(trace, forces, frame, at_disk)
+    ends, at = span_ends(trace, forces, frame, at_disk)
     return Step(
         "clearance_step",
         "Smallest length or hole-to-hole length over L0.",
         ("q", "segments"),
         trace,
-        results={"clearance": (1.0, _smallest(trace, forces, at_span))},
+        results={"clearance": (1.0, _smallest(trace, forces, at))},
         carried=frame | pose | ends,
     )
 
@@ -190,14 +197,14 @@ def pose_step(forces: SceneForces) -> Step:
     reach = reach_of(forces, trace)
     carried = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
-    ends, at_span = span_ends(trace, forces, carried, at_disk)
-    name_forces(trace, forces, at_disk, at_span)
-    energy = trace.let("segment_potential", sum(forces.on_segment.energies.values()))
-    energy += trace.let("disk_potential", placed(sp.Add(*forces.on_disk.energies.values()), at_disk))
-    if forces.on_span is not None:
-        energy += trace.let("span_potential", placed(sp.Add(*forces.on_span.energies.values()), at_span))
-    energy = trace.let("added_potential", energy)
-    smallest = _smallest(trace, forces, at_span)
+    ends, at = span_ends(trace, forces, carried, at_disk)
+    name_forces(trace, forces, at)
+    parts = forces.places.items()
+    energies = [(name, placed(sp.Add(*part.energies.values()), at)) for name, part in parts]
+    energy = trace.let(
+        "added_potential", sum(trace.let(f"{name}_potential", value) for name, value in energies)
+    )
+    smallest = _smallest(trace, forces, at)
     return Step(
         "pose_step",
         "Outwards, at rest: reach, loads, potential energy, clearance.",
@@ -212,25 +219,17 @@ def pose_step(forces: SceneForces) -> Step:
     )
 
 
-def placed(expression: Any, at_disk: dict[sp.Symbol, Any]) -> Any:
-    """A disk's expression with the chain's names for its pose and motion."""
-    return expression.xreplace(at_disk) if hasattr(expression, "xreplace") else sp.sympify(expression)
+def placed(expression: Any, at: dict[Any, Any]) -> Any:
+    """An expression with the chain's names for the poses and motions that it is written in."""
+    return expression.xreplace(at) if hasattr(expression, "xreplace") else sp.sympify(expression)
 
 
-def name_forces(
-    trace: Trace, forces: SceneForces, at_disk: dict[sp.Symbol, Any], at_span: dict[Any, Any]
-) -> None:
+def name_forces(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> None:
     """Name the generalized forces and their derivatives for the inward sweeps."""
-    for place, of_place, at in (
-        ("segment", forces.on_segment, {}),
-        ("disk", forces.on_disk, at_disk),
-        ("span", forces.on_span, at_span),
-    ):
-        if of_place is None:
-            continue
-        trace.let(f"{place}_force", placed(of_place.force, at))
+    for place, part in forces.places.items():
+        trace.let(f"{place}_force", placed(part.force, at))
         for name in ("mass", "damping", "stiffness"):
-            trace.symmetric(f"{place}_{name}", placed(getattr(of_place, name), at))
+            trace.symmetric(f"{place}_{name}", placed(getattr(part, name), at))
 
 
 def _named(name: str, value: sp.Matrix) -> sp.Matrix:

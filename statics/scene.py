@@ -33,7 +33,7 @@ class Scene:
 
     def _check(self, effect: Effect) -> None:
         for quantity in effect.arm_quantities:
-            if getattr(self.arm, quantity) in (None, ()):
+            if getattr(self.arm, quantity) == () or not self.arm.knows(quantity):
                 raise InputError(
                     f"effect '{effect.name}' needs the arm's {quantity}, which is not given. "
                     f"Give {quantity}, or leave '{effect.name}' out."
@@ -60,13 +60,19 @@ class Scene:
         """Whether cables run past nodes that are not disks: then they join poses further apart."""
         return self.cables > 0 and self.arm.subsegments > 1
 
+    @property
+    def tapered(self) -> bool:
+        """Whether a cable in play has holes of different offsets."""
+        return self.cables > 0 and self.arm.tapered
+
     def has(self, name: str) -> bool:
         """Whether the scene calls for the effect of that name."""
         return any(effect.name == name for effect in self.effects)
 
     def table(self, place: str, columns: Iterable[str]) -> np.ndarray:
         """The run-time numbers of a kernel, shape (segments, columns), for "segment" or "disk" (nodes)."""
-        known = dict(self.arm.segment_columns() if place == "segment" else self.arm.node_columns())
+        known: dict[str, np.ndarray | float] = {}
+        known.update(self.arm.segment_columns() if place == "segment" else self.arm.node_columns())
         for effect in self.effects:
             if effect.place == place:
                 known.update(effect.columns(self.arm))

@@ -51,6 +51,12 @@ class SceneForces:
     span: SpanSymbols | None = None
     on_span: Forces | None = None
 
+    @property
+    def places(self) -> dict[str, Forces]:
+        """Forces by where they act."""
+        places = {"segment": self.on_segment, "disk": self.on_disk}
+        return places if self.on_span is None else places | {"span": self.on_span}
+
 
 def dot(first: Any, second: Any) -> Any:
     """Product of two scalars, or scalar product of two vectors."""
@@ -109,13 +115,13 @@ def derive_statics(scene: Scene) -> SceneForces:
 
 def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
     """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
-    segment, disk = SegmentSymbols(scene.coordinates, scene.cables), DiskSymbols()
+    segment, disk = SegmentSymbols(scene.coordinates, scene.cables, scene.tapered), DiskSymbols()
     on_segment = collect(scene.effects, "segment", segment)
     on_disk = forces_at(collect(scene.effects, "disk", disk), disk)
     if not scene.spans:
         on_segment += collect(scene.effects, "span", segment)
         return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk)
-    span = SpanSymbols(scene.cables)
+    span = SpanSymbols(scene.cables, scene.tapered)
     on_span = forces_at(collect(scene.effects, "span", span), span)
     return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk, span, on_span)
 

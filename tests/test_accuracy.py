@@ -8,6 +8,7 @@ from conftest import SCENARIOS, motion
 
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.accuracy import LOOSEST, tip_distance
+from continuum_dyn.integrators import Budget
 from continuum_dyn.study import Accuracy, Method, Solver
 from statics import InputError, Outcome
 
@@ -81,3 +82,18 @@ def test_counters_are_those_of_the_run_that_was_kept() -> None:
     assert run.trajectory is not None
     assert run.solver is not None
     assert run.trajectory.counters == motion(replace(scenario, solver=run.solver)).counters
+
+
+def test_accuracy_that_the_budget_does_not_allow_ends_with_what_was_reached() -> None:
+    """The first pair of runs fits into the budget and is not enough; the second does not fit."""
+    scenario = replace(load_scenario(SCENARIOS / "step_response.toml"), accuracy=Accuracy(3e-8))
+    run = simulate(scenario, budget=Budget(steps=450))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "not reached" in run.message
+    assert "steps taken" in run.message
+    assert run.trajectory is not None
+    assert run.trajectory.time[-1] == 1.0
+    assert run.tip_error is not None
+    true_error = tip_distance(run.trajectory, motion(replace(scenario, accuracy=None, solver=TIGHT)))
+    assert run.tip_error == pytest.approx(true_error, rel=0.5)
+    assert run.tip_error > 3e-8

@@ -15,6 +15,7 @@ from whole_arm import (
     relative_error,
     spanned_scene,
     stiff_scene,
+    tapered_scene,
 )
 
 from continuum_dyn.dynamics import Dynamics
@@ -79,6 +80,15 @@ def test_accelerations_equal_kanes_method_where_cables_pass_nodes_between_disks(
             assert error < 10 * ROUNDING
 
 
+@pytest.mark.parametrize(("disks", "subsegments"), [(3, 1), pytest.param(2, 2, marks=pytest.mark.slow)])
+def test_accelerations_equal_kanes_method_for_arms_that_taper(disks: int, subsegments: int) -> None:
+    scene = tapered_scene(disks, subsegments)
+    for seed in SEEDS:
+        q, u = random_state(scene, seed, bend=0.7)
+        error = relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u))
+        assert error < 10 * ROUNDING
+
+
 @pytest.mark.slow
 def test_accelerations_equal_kanes_method_for_the_four_disks_of_table_1() -> None:
     scene = full_scene(4)
@@ -127,7 +137,7 @@ def test_powers_are_those_of_the_whole_arm() -> None:
     def load_energy(q: np.ndarray) -> complex:
         return whole_arm.cable_energy(arm, q, tension_at(scene)) + whole_arm.load_energy(arm, q)
 
-    viscosity = arm.relaxation / arm.L0 * np.array([arm.EJ, arm.EA])
+    viscosity = arm.relaxation * np.column_stack([arm.EJ / arm.L0, arm.EA / arm.L0])
     assert power_in == pytest.approx(-directional(load_energy, q, u), rel=1e-12)
     assert dissipated == pytest.approx(np.sum(viscosity * u**2), rel=1e-14)
 

@@ -177,7 +177,7 @@ def carried_loads(scene: Scene, shape: RodShape, tension: np.ndarray) -> np.ndar
 
 def integrated_inwards(scene: Scene, outer: np.ndarray, carried: np.ndarray) -> np.ndarray:
     """Pose at the inner end of a span, from its outer end and what it carries there; SI units."""
-    columns = scene.arm.segment_columns()
+    columns = {name: values[0] for name, values in scene.arm.segment_columns().items()}
     force_x, force_y, moment = carried
 
     def slope(_: float, state: np.ndarray) -> list[float]:

@@ -73,7 +73,7 @@ def energy_gradient(arm: WholeArm, q: np.ndarray, tension: np.ndarray) -> np.nda
 
 def energy_hessian(arm: WholeArm, q: np.ndarray, tension: np.ndarray) -> np.ndarray:
     """Shape (q.size, q.size), elongations measured in L0 so that rows compare, J."""
-    unit = np.broadcast_to([1.0, arm.L0][: q.shape[1]], q.shape).ravel()
+    unit = np.broadcast_to([1.0, arm.L0[0]][: q.shape[1]], q.shape).ravel()
 
     def scaled_gradient(z: np.ndarray) -> np.ndarray:
         return unit * energy_gradient(arm, (z * unit).reshape(q.shape), tension).ravel()
@@ -136,7 +136,7 @@ def test_paper_loads_on_disks_give_the_cables_generalized_force() -> None:
 def test_newton_step_equals_the_dense_solution(scene_of: Callable[[int], Scene]) -> None:
     scene = scene_of(5)
     arm, tension = whole_arm.whole_arm(scene), tension_of(scene)
-    unit = np.array([1.0, arm.L0])[: len(scene.coordinates)]
+    unit = np.array([1.0, arm.L0[0]])[: len(scene.coordinates)]
     for seed in SEEDS:
         q, _ = random_state(scene, seed)
         found = chain_statics(scene, q, tension)

@@ -174,6 +174,7 @@ def test_samples_between_the_steps_have_the_energy_of_the_steps() -> None:
     assert np.ptp(between) < 1.02 * np.ptp(at_steps)
 
 
+@pytest.mark.slow
 def test_arm_with_extension_keeps_its_energy_and_follows_the_motion() -> None:
     asked = release(0.01, samples=101, scene=moving(rone2012(), damping=False))
     found = motion(asked)

@@ -115,7 +115,7 @@ def test_cables_run_through_their_holes_to_their_anchor(motion: Log, tmp_path: P
     shortened = replace(motion, arm={**motion.arm, "anchor": np.array([3])})
     entities, columns = shown(shortened, tmp_path), motion.trajectory
     rows = nearest_samples(motion, entities["/arm/cables/upper"])
-    theta, offset = columns["disk_theta"][rows, :3], motion.arm["hole_offset"][0]
+    theta, offset = columns["disk_theta"][rows, :3], motion.arm["hole_offset"][0, 0]
     holes = points(entities["/arm/cables/upper"])[:, 0]
     assert_close(holes[:, 0], [[0.0, offset]] * len(rows))
     assert_close(holes[:, 1:, 0], columns["disk_x"][rows, :3] - offset * np.sin(theta))
@@ -167,7 +167,7 @@ def test_long_arms_and_long_motions_are_thinned_out(
     samples, disks = 500, 200
     many = {name: np.zeros((samples, disks)) for name in ("disk_x", "disk_y", "disk_theta", "curvature")}
     many |= {"length": np.full((samples, disks), 4e-4), "tension": np.zeros((samples, 1))}
-    arm = {**motion.arm, "anchor": np.array([disks])}
+    arm = {**motion.arm, "anchor": np.array([disks]), "hole_offset": np.full((1, disks + 1), 0.008)}
     long = replace(
         motion, trajectory={"time": np.linspace(0.0, 50.0, samples), **many}, arm=arm, equilibria={}
     )

@@ -56,6 +56,7 @@ def test_two_meshes_tell_where_the_exact_rod_is_with_fourth_order(tension: float
     np.testing.assert_allclose(np.log2(np.divide(left[:-1], left[1:])), 4.0, atol=0.15)
 
 
+@pytest.mark.slow
 def test_without_extension_the_order_is_the_same() -> None:
     scene = rone2012()
     stiff = Scene(scene.arm, (effect for effect in scene.effects if not isinstance(effect, Extension)))
@@ -215,6 +216,7 @@ def test_density_needs_an_area() -> None:
         Arm(2, 0.1, core_density=7800.0)
 
 
+@pytest.mark.slow
 def test_midpoint_rule_knows_cables_past_nodes_between_disks() -> None:
     """Undamped: it tends to the explicit method's motion with second order, and keeps the energy."""
     scene = moving(meshed(2, density=7800.0), damping=False)

@@ -25,7 +25,7 @@ from sympy.physics.mechanics import (
 )
 
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
-from statics.arm import Arm, Cable
+from statics.arm import Arm, Cable, Each
 from statics.effects import Bending, Cables, DiskLoad, DiskLoads, Extension, Gravity
 from statics.scene import Scene
 
@@ -36,18 +36,19 @@ from statics.scene import Scene
 class WholeArm:
     """An arm in the paper's letters, SI units; what a scene leaves out is zero here.
 
-    ``n`` segments of length ``L0``; every ``step``-th of their ends is a disk. ``m`` and ``I_xx`` hold what
-    stands on each end, shape (n,), so do the dead loads ``force`` (n, 2) and ``moment`` (n,). ``r_h`` and
-    ``last`` (the anchor's disk) hold one number for each cable; ``relaxation`` is eta / E.
+    ``n`` segments, with ``L0``, ``EJ``, ``EA`` and ``k0`` of each, shape (n,); every ``step``-th of their
+    ends is a disk. ``m`` and ``I_xx`` hold what stands on each end, shape (n,), so do the dead loads
+    ``force`` (n, 2) and ``moment`` (n,). ``r_h`` has shape (cables, disks + 1), the base's first; ``last``
+    (the anchor's disk) has one number for each cable; ``relaxation`` is eta / E.
     """
 
     n: int
     step: int
     extends: bool
-    L0: float
-    EJ: float
-    EA: float
-    k0: float
+    L0: np.ndarray
+    EJ: np.ndarray
+    EA: np.ndarray
+    k0: np.ndarray
     m: np.ndarray
     I_xx: np.ndarray
     g: np.ndarray
@@ -60,7 +61,12 @@ class WholeArm:
     @property
     def numbers(self) -> list[float]:
         """In the order of ``_Symbols.numbers``."""
-        return [self.L0, self.EJ, self.EA, self.k0, *self.g, self.relaxation]
+        return [*self.g, self.relaxation]
+
+    @property
+    def core(self) -> list[np.ndarray]:
+        """In the order of ``_Symbols.core``."""
+        return [self.L0, self.EJ, self.EA, self.k0]
 
     def tension_along(self, tension: np.ndarray) -> np.ndarray:
         """Tension of every cable from disk to disk, shape (cables, disks): zero beyond the anchor."""
@@ -70,7 +76,7 @@ class WholeArm:
 def whole_arm(scene: Scene) -> WholeArm:
     """Numbers of a scene in the paper's letters."""
     arm, has = scene.arm, {type(effect): effect for effect in scene.effects}
-    E = arm.youngs_modulus or 0.0
+    E = arm.per_disk("youngs_modulus")
     cables = arm.cables if Cables in has else ()
     gravity, damping = has.get(Gravity), has.get(MaterialDamping)
     n, step = arm.disks * arm.subsegments, arm.subsegments
@@ -78,23 +84,27 @@ def whole_arm(scene: Scene) -> WholeArm:
     for load in getattr(has.get(DiskLoads), "loads", ()):
         force[step * load.disk - 1] += load.force
         moment[step * load.disk - 1] += load.moment
-    m[step - 1 :: step] = arm.disk_mass or 0.0
-    I_xx[step - 1 :: step] = (arm.disk_inertia or 0.0) if RotaryInertia in has else 0.0
-    core = (arm.core_density or 0.0) * (arm.area or 0.0) * arm.disk_spacing / step
-    m += [core] * (n - 1) + [core / 2]
+    m[step - 1 :: step] = arm.per_disk("disk_mass")
+    I_xx[step - 1 :: step] = arm.per_disk("disk_inertia") if RotaryInertia in has else 0.0
+    L0 = np.repeat(arm.per_disk("disk_spacing") / step, step)
+    A = np.repeat(arm.per_disk("area"), step)
+    for i in range(n):
+        core = (arm.core_density or 0.0) * A[i] * L0[i]
+        m[i] += core / 2
+        m[i - 1] += core / 2 if i > 0 else 0.0
     return WholeArm(
         n=n,
         step=step,
         extends=Extension in has,
-        L0=arm.disk_spacing / step,
-        EJ=E * (arm.second_moment or 0.0),
-        EA=E * (arm.area or 0.0),
-        k0=arm.reference_curvature,
+        L0=L0,
+        EJ=np.repeat(E * arm.per_disk("second_moment"), step),
+        EA=np.repeat(E, step) * A,
+        k0=np.repeat(arm.per_disk("reference_curvature"), step),
         m=m,
         I_xx=I_xx,
         g=np.array(gravity.acceleration if isinstance(gravity, Gravity) else (0.0, 0.0)),
         relaxation=damping.retardation_time if isinstance(damping, MaterialDamping) else 0.0,
-        r_h=np.array([cable.hole_offset for cable in cables]),
+        r_h=np.array([cable.holes(arm.disks) for cable in cables]).reshape(-1, arm.disks + 1),
         last=np.array([cable.anchor or arm.disks for cable in cables]),
         force=force,
         moment=moment,
@@ -125,6 +135,25 @@ def spanned_scene(disks: int, subsegments: int = 2) -> Scene:
     """Several segments from disk to disk, past which the cable runs straight; the core has its own mass."""
     meshed = {"subsegments": subsegments, "core_density": 7800.0, "cables": ONE_CABLE}
     arm = Arm.preset("rone2012", disks=disks, reference_curvature=3.0, **meshed)
+    at_rest = (Bending(), Extension(), Gravity(), Cables())
+    return Scene(arm, (*at_rest, Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)))
+
+
+def tapered_scene(disks: int, subsegments: int = 1) -> Scene:
+    """Disks, cores and holes that all differ from base to tip."""
+    steps = np.linspace(1.0, 0.6, disks)
+    offsets = np.linspace(0.009, 0.005, disks + 1)
+    table_1 = {"disk_spacing": 0.02, "area": 5.027e-7, "second_moment": 2.011e-14, "disk_mass": 7.782e-4}
+    each = {name: tuple(value * steps**power) for power, (name, value) in enumerate(table_1.items(), start=1)}
+    curvature = tuple(np.linspace(3.0, -2.0, disks))
+    arm = Arm.preset(
+        "rone2012",
+        disks=disks,
+        subsegments=subsegments,
+        core_density=7800.0,
+        each=Each(**each, reference_curvature=curvature),
+        cables=(Cable("upper", tuple(offsets)), Cable("lower", -0.006, anchor=max(1, disks - 1))),
+    )
     at_rest = (Bending(), Extension(), Gravity(), Cables())
     return Scene(arm, (*at_rest, Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)))
 
@@ -162,16 +191,17 @@ class _Symbols:
         self.phi, self.phi_rate = dynamicsymbols(f"phi1:{n + 1}"), dynamicsymbols(f"omega1:{n + 1}")
         self.e = dynamicsymbols(f"e1:{n + 1}") if extends else ()
         self.e_rate = dynamicsymbols(f"v1:{n + 1}") if extends else ()
-        self.numbers = sp.symbols("L0 EJ EA k0 g_x g_y relaxation")
+        self.numbers = sp.symbols("g_x g_y relaxation")
+        self.core = [sp.symbols(f"{name}_1:{n + 1}") for name in ("L0", "EJ", "EA", "k0")]
         self.m, self.I_xx = sp.symbols(f"m1:{n + 1}"), sp.symbols(f"I1:{n + 1}")
-        self.r_h = sp.symbols(f"r1:{cables + 1}")
+        self.r_h = sp.Matrix(cables, n // step + 1, lambda c, i: sp.Symbol(f"r{c}_{i}"))
         self.tension = sp.Matrix(cables, n // step, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
         self.load = sp.Matrix(n, 3, lambda i, a: sp.Symbol(f"load{i}_{a}"))
         self.q, self.u = [*self.phi, *self.e], [*self.phi_rate, *self.e_rate]
 
     @property
     def arguments(self) -> list[Any]:
-        numbers = [self.numbers, self.m, self.I_xx, self.r_h]
+        numbers = [self.numbers, *self.core, self.m, self.I_xx, self.r_h.flat()]
         return [self.q, self.u, *numbers, self.tension.flat(), self.load.flat()]
 
     def rate(self, expression: Any) -> Any:
@@ -180,12 +210,11 @@ class _Symbols:
 
 def _place_disks(s: _Symbols) -> tuple[list[ReferenceFrame], list[Point]]:
     """Frames and centres of the base and of all disks, with their velocities. Rone 2012, Eq. 10-12."""
-    L0 = s.numbers[0]
     frames, centers = [ReferenceFrame("N")], [Point("O")]
     base = frames[0]
     centers[0].set_vel(base, 0)
     for i, phi in enumerate(s.phi):
-        L = L0 + s.e[i] if s.e else L0
+        L = s.core[0][i] + s.e[i] if s.e else s.core[0][i]
         k = phi / L
         x, y = sp.sin(phi) / k, (1 - sp.cos(phi)) / k
         near, frame = frames[-1], ReferenceFrame(f"A{i + 1}")
@@ -212,18 +241,18 @@ def _disk_loads(s: _Symbols, frames: list[ReferenceFrame], centers: list[Point])
 
 def _core_moments(s: _Symbols, frames: list[ReferenceFrame]) -> list[Any]:
     """Bending moments of a Kelvin-Voigt core on the two disks of every segment (Eq. 20)."""
-    L0, EJ, _EA, k0, *_, relaxation = s.numbers
+    (L0, EJ, _EA, k0), (*_, relaxation) = s.core, s.numbers
     loads: list[Any] = []
     for i, phi in enumerate(s.phi):
-        moment = EJ * ((phi + relaxation * s.phi_rate[i]) / L0 - k0) * frames[0].z
+        moment = EJ[i] * ((phi + relaxation * s.phi_rate[i]) / L0[i] - k0[i]) * frames[0].z
         loads += [(frames[i + 1], -moment), (frames[i], moment)]
     return loads
 
 
 def _axial_forces(s: _Symbols) -> sp.Matrix:
     """Generalized forces of a Kelvin-Voigt core along its length: they work along e alone."""
-    L0, _EJ, EA, *_, relaxation = s.numbers
-    along = [-EA / L0 * (e + relaxation * rate) for e, rate in zip(s.e, s.e_rate, strict=True)]
+    (L0, _EJ, EA, _k0), (*_, relaxation) = s.core, s.numbers
+    along = [-EA[i] / L0[i] * (e + relaxation * s.e_rate[i]) for i, e in enumerate(s.e)]
     return sp.Matrix([*[0] * len(s.phi), *along])
 
 
@@ -231,8 +260,8 @@ def _cable_forces(s: _Symbols, c: int, frames: list[ReferenceFrame], centers: li
     """One cable's pulls from hole to hole, on both of any two neighbouring disks (Eq. 22-24)."""
     base, loads, holes = frames[0], [], []
     disks = frames[:: s.step]
-    for frame, center in zip(disks, centers[:: s.step], strict=True):
-        hole = center.locatenew(f"{center.name}_hole{c}", s.r_h[c] * frame.y)
+    for i, (frame, center) in enumerate(zip(disks, centers[:: s.step], strict=True)):
+        hole = center.locatenew(f"{center.name}_hole{c}", s.r_h[c, i] * frame.y)
         hole.v2pt_theory(center, base, frame)
         holes.append(hole)
     for i, near in enumerate(disks[:-1]):
@@ -271,7 +300,8 @@ def _kane_function(
 
 def _arguments(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> list[np.ndarray]:
     load = np.column_stack([arm.force, arm.moment])
-    tensions, numbers = arm.tension_along(tension), [np.array(arm.numbers), arm.m, arm.I_xx, arm.r_h]
+    tensions, numbers = arm.tension_along(tension), [np.array(arm.numbers), *arm.core, arm.m, arm.I_xx]
+    numbers.append(arm.r_h.ravel())
     return [q.T.ravel(), u.T.ravel(), *numbers, tensions.ravel(), load.ravel()]
 
 
@@ -329,8 +359,8 @@ def cable_lengths(arm: WholeArm, q: np.ndarray) -> np.ndarray:
 
 def elastic_energy(arm: WholeArm, q: np.ndarray) -> Any:
     """Of the core, zero where it is unloaded, J."""
-    energy = arm.EJ / (2 * arm.L0) * np.sum((q[:, 0] - arm.k0 * arm.L0) ** 2)
-    return energy + (arm.EA / (2 * arm.L0) * np.sum(q[:, 1] ** 2) if arm.extends else 0)
+    energy = np.sum(arm.EJ / (2 * arm.L0) * (q[:, 0] - arm.k0 * arm.L0) ** 2)
+    return energy + (np.sum(arm.EA / (2 * arm.L0) * q[:, 1] ** 2) if arm.extends else 0)
 
 
 def gravity_energy(arm: WholeArm, q: np.ndarray) -> Any:

@@ -61,7 +61,7 @@ class Case:
         self.EJ = (arm.youngs_modulus or 0.0) * (arm.second_moment or 0.0)
         self.EA = (arm.youngs_modulus or 0.0) * (arm.area or 0.0)
         self.mass, self.inertia = arm.disk_mass or 0.0, arm.disk_inertia or 0.0
-        self.hole = arm.cables[0].hole_offset
+        self.hole = float(arm.cables[0].holes(0)[0])
         self.gravity = np.array(gravity.acceleration)
         self.retardation: float = getattr(effects["material_damping"], "retardation_time")  # noqa: B009
         self.duration = duration

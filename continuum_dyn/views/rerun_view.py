@@ -193,7 +193,7 @@ def _core(columns: Mapping[str, np.ndarray], rows: np.ndarray) -> np.ndarray:
 def _half_width(log: Log) -> float:
     """Half the drawn width of a disk, m."""
     outermost_hole = float(np.abs(log.arm["hole_offset"]).max(initial=0.0))
-    return 1.2 * outermost_hole or 0.25 * float(log.arm["disk_spacing"])
+    return 1.2 * outermost_hole or 0.25 * float(np.mean(log.arm["disk_spacing"]))
 
 
 def _moving_lines(log: Log, story: Story, frames: np.ndarray) -> dict[str, Lines]:
@@ -207,7 +207,7 @@ def _moving_lines(log: Log, story: Story, frames: np.ndarray) -> dict[str, Lines
     }
     cables = zip(log.cables, log.arm["hole_offset"], log.arm["anchor"], _colors(len(log.cables)), strict=True)
     for name, hole_offset, anchor, color in cables:
-        holes = (centre + hole_offset * normal)[:, None, : anchor + 1]
+        holes = (centre + hole_offset[:, None] * normal)[:, None, : anchor + 1]
         lines[f"arm/cables/{rr.escape_entity_path_part(name)}"] = Lines(holes, color, 1.5, 30.0)
     return lines
 

@@ -48,7 +48,7 @@ def disk_loads(
     moment = np.zeros(arm.disks)
     for cable, tau in zip(arm.cables, tension, strict=True):
         last = cable.anchor or arm.disks
-        r_h = cable.hole_offset * normal[: last + 1]
+        r_h = cable.holes(arm.disks)[: last + 1, None] * normal[: last + 1]
         p_h = np.diff(center[: last + 1] + r_h, axis=0)
         pull = tau * p_h / np.linalg.norm(p_h, axis=1, keepdims=True)
         on_disk = -pull
