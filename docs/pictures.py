@@ -6,13 +6,14 @@ from tempfile import TemporaryDirectory
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.cost import measure
 from continuum_dyn.record import read_log, write_log
+from continuum_dyn.reproduce import reproduce
 from continuum_dyn.views import plots
 
 HERE = Path(__file__).parent
 
 
 def main() -> None:
-    """Run the step response, and draw it and what its accuracy costs."""
+    """Draw the step response, what its accuracy costs, and the paper computed again."""
     scenario = load_scenario(HERE.parent / "scenarios" / "step_response.toml")
     with TemporaryDirectory() as folder:
         log = Path(folder) / "step_response.h5"
@@ -20,6 +21,7 @@ def main() -> None:
         figures = {
             "step_response.png": plots.step_response(read_log(log)),
             "cost.png": plots.cost(measure(scenario)),
+            "rone2012.png": plots.rone2012(reproduce("rone2012")),
         }
     for name, figure in figures.items():
         figure.savefig(HERE / name, dpi=130)

@@ -116,7 +116,7 @@ def test_play_refuses_what_is_not_a_log(tmp_path: Path) -> None:
     assert "no such file" in result.stderr
 
 
-@pytest.mark.parametrize("name", ["run", "play", "explain", "cost"])
+@pytest.mark.parametrize("name", ["run", "play", "explain", "cost", "reproduce"])
 def test_help_fits_80_columns(name: str) -> None:
     result = runner.invoke(app, [name, "--help"])
     assert result.exit_code == 0

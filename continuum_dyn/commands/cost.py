@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.show import length, make_folder
+from continuum_dyn.commands.show import length, make_folder, table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,17 +86,8 @@ def _show(measured: "Cost") -> None:
     console.print(_frontier_table(measured))
 
 
-def _table(title: str, *columns: str) -> Any:
-    from rich.table import Table
-
-    made = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="dim")
-    for number, column in enumerate(columns):
-        made.add_column(column, justify="left" if number == 0 else "right")
-    return made
-
-
 def _price_table(measured: "Cost") -> Any:
-    prices = _table(measured.scenario.title, "method", "rtol", "tip error", "time", "steps", "work")
+    prices = table(measured.scenario.title, "method", "rtol", "tip error", "time", "steps", "work")
     for p in measured.prices:
         row = (length(p.error), f"{p.seconds * 1e3:.3g} ms", str(p.steps), str(p.segment_evaluations))
         prices.add_row(p.method, f"{p.rtol:.0e}", *row)
@@ -107,7 +98,7 @@ def _price_table(measured: "Cost") -> Any:
 
 def _mesh_table(meshes: "Sequence[MeshPrice]") -> Any:
     columns = ("subsegments", "tip", "order", "angle", "order", "from two", "order", "statics", "motion")
-    table = _table("Meshes", *columns)
+    made = table("Meshes", *columns)
     for before, mesh in zip((None, *meshes), meshes, strict=False):
         names = ("tip_error", "angle_error", "limit_error")
         errors = [getattr(mesh, name) for name in names]
@@ -115,14 +106,14 @@ def _mesh_table(meshes: "Sequence[MeshPrice]") -> Any:
             _order(getattr(before, name, None), error) for name, error in zip(names, errors, strict=True)
         ]
         moved = "" if mesh.motion_seconds is None else f"{mesh.motion_seconds * 1e3:.3g} ms"
-        table.add_row(
+        made.add_row(
             str(mesh.subsegments),
             *(length(errors[0]), orders[0]),
             *(f"{errors[1]:.1e}", orders[1]),
             *("" if errors[2] is None else length(errors[2]), orders[2]),
             *(f"{mesh.seconds * 1e6:.3g} us", moved),
         )
-    return table
+    return made
 
 
 def _order(before: float | None, error: float | None) -> str:
@@ -131,7 +122,7 @@ def _order(before: float | None, error: float | None) -> str:
 
 
 def _effect_table(measured: "Cost") -> Any:
-    effects = _table("Without an effect", "left out", "tip moves by", "time", "fastest rate")
+    effects = table("Without an effect", "left out", "tip moves by", "time", "fastest rate")
     effects.add_row("(nothing)", "", "1", f"{measured.fastest_rate:.3g} 1/s")
     for e in measured.effects:
         if e.tip_shift is None:
@@ -142,7 +133,7 @@ def _effect_table(measured: "Cost") -> Any:
 
 
 def _frontier_table(measured: "Cost") -> Any:
-    frontier = _table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
+    frontier = table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
     for target, p in measured.frontier().items():
         if p is None:
             frontier.add_row(length(target), "not reached")

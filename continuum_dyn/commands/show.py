@@ -1,6 +1,7 @@
-"""What the commands share: a length in its best unit, a folder to write to."""
+"""What the commands share: a length in its best unit, a table, a folder to write to."""
 
 from pathlib import Path
+from typing import Any
 
 from statics.errors import LogError
 
@@ -11,6 +12,16 @@ def length(value: float) -> str:
         if value >= 0.999 * size:
             return f"{value / size:.3g} {unit}"
     return f"{value / 1e-12:.3g} pm"
+
+
+def table(title: str, *columns: str) -> Any:
+    """An empty table of rich's; numbers stand to the right, names in the first column to the left."""
+    from rich.table import Table
+
+    made = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="dim")
+    for number, column in enumerate(columns):
+        made.add_column(column, justify="left" if number == 0 else "right")
+    return made
 
 
 def make_folder(folder: Path) -> None:

@@ -8,12 +8,23 @@ from matplotlib.figure import Figure
 
 from continuum_dyn.cost import Cost
 from continuum_dyn.record import Log
+from continuum_dyn.reproduce import Rone2012, Shapes
 from continuum_dyn.views.backbone import backbone
 from statics.quantities import QUANTITIES
 
 ARC_POINTS = 12
 STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+")]
 """Lines and markers that can be told apart in black and white."""
+LAWS = {
+    "printed": {"ls": "--", "color": "C3", "lw": 1.6, "label": "equations as printed"},
+    "program": {"ls": "-", "color": "k", "lw": 1.2, "label": "the program"},
+    "exact rod": {"ls": "", "marker": "o", "mfc": "none", "color": "C0", "ms": 7, "label": "exact rod"},
+}
+"""How the laws of a paper's reproduction are drawn."""
+LIFTS_CLEARLY = 0.5
+"""N; below it the paper's arm stays within a millimetre of the base's height."""
+PARTS_CLEARLY = 1.0
+"""N; from here on the printed equations' tip stands clear of the others."""
 
 
 def step_response(log: Log) -> Figure:
@@ -123,3 +134,48 @@ def _draw_energies(axes: Any, log: Log) -> None:
     axes.set(xlabel=QUANTITIES["time"].label, ylabel="since the start (mJ)", title="Where the work goes")
     axes.margins(y=0.25)
     axes.legend(loc="upper right", ncols=2, fontsize=8)
+
+
+def rone2012(found: Rone2012) -> Figure:
+    """The shapes of Fig. 3 and 4 by all three laws, and the tip's height against the tension."""
+    figure = Figure(figsize=(11.0, 5.6), layout="constrained")
+    axes: dict[str, Any] = figure.subplot_mosaic([["high", "tip"], ["low", "tip"]], width_ratios=[1.25, 1.0])
+    low = [found.unactuated, *(shapes for shapes in found.figure_4 if shapes.tension < LIFTS_CLEARLY)]
+    high = [shapes for shapes in found.figure_4 if shapes.tension >= LIFTS_CLEARLY]
+    _draw_laws(axes["high"], high, 1e3)
+    axes["high"].set(ylabel="y (mm)", title="Shapes of Fig. 4")
+    _draw_laws(axes["low"], low, 1e6)
+    axes["low"].set(xlabel="x (mm)", ylabel="y (um)", title="Shapes of Fig. 3 and 4 (y stretched)")
+    _draw_tip_heights(axes["tip"], found)
+    figure.suptitle("Rone and Ben-Tzvi 2012: the equations as printed, the program's, and the exact rod")
+    return figure
+
+
+def _draw_laws(axes: Any, drawn: list[Shapes], per_metre: float) -> None:
+    """Arcs of the printed and the program's segments, and the exact rod's disks."""
+    for shapes in drawn:
+        for law, shape in (("printed", shapes.printed), ("program", shapes.program)):
+            arcs = {"curvature": shape.curvature[None], "length": shape.length[None]}
+            x, y = backbone(arcs, np.array([0]), ARC_POINTS)[0].T
+            axes.plot(1e3 * x, per_metre * y, **LAWS[law])
+            if law == "program" or shapes.tension >= PARTS_CLEARLY:
+                place, text = (1e3 * x[-1], per_metre * y[-1]), f"{shapes.tension:g} N"
+                axes.annotate(text, place, xytext=(9, 0), textcoords="offset points", fontsize=8, va="center")
+        axes.plot(1e3 * shapes.rod.disk_x, per_metre * shapes.rod.disk_y, **LAWS["exact rod"])
+    axes.axhline(0.0, color="0.7", lw=0.8)
+    axes.margins(x=0.12, y=0.1)
+
+
+def _draw_tip_heights(axes: Any, found: Rone2012) -> None:
+    """The tip against the tension, and enlarged where it passes the base's height."""
+    near = axes.inset_axes((0.12, 0.48, 0.34, 0.26))
+    tension = [shapes.tension for shapes in found.ramp]
+    for law, look in LAWS.items():
+        height = np.array([shapes.tip_y[law] for shapes in found.ramp])
+        axes.plot(tension, 1e3 * height, **look)
+        near.plot(tension, 1e6 * height, **{**look, "ls": look["ls"] or ":"})
+    near.axhline(0.0, color="0.7", lw=0.8)
+    near.set(xlim=(0.09, 0.11), ylim=(-90, 90))
+    near.set_title("near 0.1 N (y in um)", fontsize=9)
+    axes.set(xlabel=QUANTITIES["tension"].label, ylabel="tip y (mm)", title="Tip against tension")
+    axes.legend(loc="upper left")
