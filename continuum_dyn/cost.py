@@ -209,7 +209,7 @@ def _meshes(scenario: Scenario, progress: Callable[[str], None]) -> tuple[list[M
     tension = last.tension(np.array([last.end]))[0]
     progress("exact rod")
     try:
-        rod = exact_rod(scenario.scene, tension).tip
+        rod = exact_rod(scenario.scene, tension[: scenario.scene.cables]).tip
     except (InputError, RodError) as reason:
         return [], str(reason)
     found: list[MeshPrice] = []
@@ -280,4 +280,9 @@ def _effects(scenario: Scenario, motion: Motion, progress: Callable[[str], None]
 
 def _without(scenario: Scenario, name: str) -> Scenario:
     scene = Scene(scenario.scene.arm, (effect for effect in scenario.scene.effects if effect.name != name))
-    return replace(scenario, scene=scene, tension=scenario.tension if scene.cables else ())
+    return replace(
+        scenario,
+        scene=scene,
+        tension=scenario.tension if scene.cables else (),
+        load_factors=scenario.load_factors if scene.driven_loads else (),
+    )

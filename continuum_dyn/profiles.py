@@ -1,4 +1,4 @@
-"""Tension over time, as data: pieces between corners, evaluated in compiled code.
+"""A tension or a load over time, as data: pieces between corners, evaluated in compiled code.
 
 A piece is a row (start, value, slope, amplitude, angular frequency) and means
 value + slope (t - start) + amplitude sin(angular frequency t) from its start to the next one's. At a jump
@@ -21,19 +21,19 @@ TIME_RESOLUTION = 1e-300
 """Rows of a table closer than this (s) would have slopes beyond floating point."""
 
 Piece = tuple[float, float, float, float, float]
-"""Start (s), value (N), slope (N/s), amplitude (N), angular frequency (rad/s)."""
+"""Start (s), value, slope (1/s), amplitude, angular frequency (rad/s); values in N for a tension."""
 
 
 @dataclass(frozen=True, config=STRICT)
 class Constant:
-    """``value`` at all times, N."""
+    """``value`` at all times."""
 
-    value: NonNegative
+    value: float
     profile: Literal["constant"] = "constant"
 
     @property
     def initial(self) -> float:
-        """Tension of the equilibrium that the motion starts from, N."""
+        """Value at the equilibrium that the motion starts from."""
         return self.value
 
     def pieces(self) -> list[Piece]:
@@ -48,14 +48,14 @@ class Step:
     With ``at`` = 0 the arm starts from the equilibrium of ``before``.
     """
 
-    before: NonNegative
-    after: NonNegative
+    before: float
+    after: float
     at: NonNegative = 0.0
     profile: Literal["step"] = "step"
 
     @property
     def initial(self) -> float:
-        """Tension of the equilibrium that the motion starts from, N."""
+        """Value at the equilibrium that the motion starts from."""
         return self.before
 
     def pieces(self) -> list[Piece]:
@@ -68,8 +68,8 @@ class Step:
 class Ramp:
     """``before`` until ``start``, ``after`` from ``end`` on, linear between."""
 
-    before: NonNegative
-    after: NonNegative
+    before: float
+    after: float
     start: NonNegative
     end: Positive
     profile: Literal["ramp"] = "ramp"
@@ -82,7 +82,7 @@ class Ramp:
 
     @property
     def initial(self) -> float:
-        """Tension of the equilibrium that the motion starts from, N."""
+        """Value at the equilibrium that the motion starts from."""
         return self.before
 
     def pieces(self) -> list[Piece]:
@@ -94,22 +94,16 @@ class Ramp:
 
 @dataclass(frozen=True, config=STRICT)
 class Sine:
-    """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t); never below zero."""
+    """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t)."""
 
-    mean: NonNegative
+    mean: float
     amplitude: float
     frequency: Positive
     profile: Literal["sine"] = "sine"
 
-    def __post_init__(self) -> None:
-        if abs(self.amplitude) > self.mean:
-            raise InputError(
-                f"a cable cannot push; mean {self.mean:g} N, amplitude {self.amplitude:g} N falls below zero"
-            )
-
     @property
     def initial(self) -> float:
-        """Tension of the equilibrium that the motion starts from, N."""
+        """Value at the equilibrium that the motion starts from."""
         return self.mean
 
     def pieces(self) -> list[Piece]:
@@ -119,15 +113,15 @@ class Sine:
 
 @dataclass(frozen=True, config=STRICT)
 class Table:
-    """Linear between given times (s) and tensions (N); before the first and after the last they hold."""
+    """Linear between given times (s) and values; before the first and after the last they hold."""
 
     time: Annotated[tuple[float, ...], Field(strict=False, min_length=1)]
-    tension: Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1)]
+    value: Annotated[tuple[float, ...], Field(strict=False, min_length=1)]
     profile: Literal["table"] = "table"
 
     def __post_init__(self) -> None:
-        if len(self.time) != len(self.tension):
-            raise InputError(f"{len(self.time)} times, but {len(self.tension)} tensions")
+        if len(self.time) != len(self.value):
+            raise InputError(f"{len(self.time)} times, but {len(self.value)} values")
         for row, (earlier, later) in enumerate(pairwise(self.time), start=2):
             if later <= earlier:
                 raise InputError(
@@ -140,17 +134,26 @@ class Table:
 
     @property
     def initial(self) -> float:
-        """Tension of the equilibrium that the motion starts from, N."""
-        return float(np.interp(0.0, self.time, self.tension))
+        """Value at the equilibrium that the motion starts from."""
+        return float(np.interp(0.0, self.time, self.value))
 
     def pieces(self) -> list[Piece]:
         """One piece before the first row, one from each row to the next, one after the last."""
-        rows = list(zip(self.time, self.tension, strict=True))
+        rows = list(zip(self.time, self.value, strict=True))
         between = [
             (t, value, (later[1] - value) / (later[0] - t), 0.0, 0.0) for (t, value), later in pairwise(rows)
         ]
-        first, last = (min(0.0, self.time[0]), self.tension[0]), rows[-1]
+        first, last = (min(0.0, self.time[0]), self.value[0]), rows[-1]
         return [(*first, 0.0, 0.0, 0.0), *between, (*last, 0.0, 0.0, 0.0)]
+
+
+def lowest(profile: "Profile") -> float:
+    """The least value that a profile takes, or comes near to."""
+    if isinstance(profile, Sine):
+        return profile.mean - abs(profile.amplitude)
+    if isinstance(profile, Table):
+        return min(profile.value)
+    return min(profile.initial, *(piece[1] for piece in profile.pieces()))
 
 
 Profile = Constant | Step | Ramp | Sine | Table
@@ -165,14 +168,14 @@ PROFILES: dict[str, type[Profile]] = {
 
 @dataclasses.dataclass(frozen=True)
 class Span:
-    """A stretch of time without corners, and each cable's piece over it, shape (cables, 5)."""
+    """A stretch of time without corners, and each profile's piece over it, shape (profiles, 5)."""
 
     start: float
     end: float
     pieces: np.ndarray
 
     def tension(self, time: np.ndarray) -> np.ndarray:
-        """Tensions at the given times of this span, shape (times, cables), N."""
+        """Values at the given times of this span, shape (times, profiles); N for tensions."""
         start, value, slope, amplitude, frequency = self.pieces.T
         t = np.asarray(time)[:, None]
         return value + slope * (t - start) + amplitude * np.sin(frequency * t)

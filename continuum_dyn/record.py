@@ -33,6 +33,7 @@ _DIMENSIONS = {
     **dict.fromkeys(("curvature", "length"), "segment"),
     **dict.fromkeys(("disk_x", "disk_y", "disk_theta"), "disk"),
     "tension": "cable",
+    "load_factor": "load",
 }
 """Second dimension of datasets that have one."""
 
@@ -231,6 +232,7 @@ def _write_group(
         "segment": np.arange(1, arm.segments + 1),
         "disk": np.arange(1, arm.disks + 1),
         "cable": _names(scenario),
+        "load": np.arange(1, scenario.scene.driven_loads + 1),
     }
     for name, values in scales.items():
         _write_scale(group, name, values)

@@ -26,7 +26,7 @@ from continuum_dyn.study import (
     StepResponseStudy,
 )
 from statics.arm import PRESETS, Arm, Cable, DiskNumber, Each, PerDisk
-from statics.checked import STRICT, NonNegative, Positive
+from statics.checked import STRICT, NonNegative, Positive, Vector
 from statics.effects import Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
 from statics.scene import Scene
@@ -56,17 +56,25 @@ class UnknownProfile(BaseModel):
     profile: Annotated[str, Field(pattern="^(" + "|".join(PROFILES) + ")$")]
 
 
-Tension = Annotated[
-    Annotated[NonNegative, Tag("number")]
-    | Annotated[list[NonNegative], Field(min_length=1), Tag("list")]
-    | Annotated[Constant, Tag("constant")]
+ProfileTable = (
+    Annotated[Constant, Tag("constant")]
     | Annotated[Step, Tag("step")]
     | Annotated[Ramp, Tag("ramp")]
     | Annotated[Sine, Tag("sine")]
     | Annotated[TableFile, Tag("table")]
-    | Annotated[UnknownProfile, Tag("profile")],
+    | Annotated[UnknownProfile, Tag("profile")]
+)
+Tension = Annotated[
+    Annotated[NonNegative, Tag("number")]
+    | Annotated[list[NonNegative], Field(min_length=1), Tag("list")]
+    | ProfileTable,
     Discriminator(_tension_kind),
 ]
+Factor = Annotated[
+    Annotated[float, Tag("number")] | Annotated[float, Tag("list")] | ProfileTable,
+    Discriminator(_tension_kind),
+]
+"""A list is not allowed, and told so as a number that it is not."""
 
 
 def _number_kind(value: Any) -> str:
@@ -112,6 +120,16 @@ class CableTable(BaseModel):
     tension: Tension
 
 
+class LoadTable(BaseModel):
+    """One of [[loads]]; with ``factor`` it changes in time."""
+
+    model_config = STRICT
+    disk: DiskNumber
+    force: Vector = (0.0, 0.0)
+    moment: float = 0.0
+    factor: Factor | None = None
+
+
 EffectsTable: type[BaseModel] = create_model(
     "EffectsTable",
     __config__=STRICT,
@@ -132,7 +150,7 @@ class ScenarioFile(BaseModel):
     arm: ArmTable
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]
     cables: list[CableTable] = []
-    loads: list[DiskLoad] = []
+    loads: list[LoadTable] = []
     study: StudyTable
     solver: Solver = Solver()
     accuracy: Accuracy | None = None
@@ -143,13 +161,15 @@ _KEYS: dict[str, Any] = {
     "arm": ArmTable,
     "effects": EffectsTable,
     "cables": CableTable,
-    "loads": DiskLoad,
+    "loads": LoadTable,
     "solver": Solver,
     "accuracy": Accuracy,
     **{f"study.{name}": study for name, study in STUDIES.items()},
     **{f"effects.{name}": effect for name, effect in EFFECTS.items()},
     **{f"cables.tension.{name}": profile for name, profile in PROFILES.items()},
+    **{f"loads.factor.{name}": profile for name, profile in PROFILES.items()},
     "cables.tension.table": TableFile,
+    "loads.factor.table": TableFile,
 }
 
 
@@ -214,7 +234,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
     if file.cables:
         effects.append(Cables())
     if file.loads:
-        effects.append(DiskLoads(loads=tuple(file.loads)))
+        effects.append(DiskLoads(loads=tuple(map(_load, file.loads))))
     tension = tuple(_ramp_or_profile(cable, path, is_ramp) for cable in file.cables)
     if is_ramp:
         tension = _repeated(tension)
@@ -224,6 +244,9 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         study=file.study,
         solver=file.solver,
         accuracy=file.accuracy,
+        load_factors=tuple(
+            _profile(load.factor, path, "factor") for load in file.loads if load.factor is not None
+        ),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or path.stem,
         text=text,
@@ -288,9 +311,18 @@ def _ramp_or_profile(cable: CableTable, path: Path, is_ramp: bool) -> Any:
         return tuple(map(float, tension))
     if isinstance(tension, list):
         raise InputError('[[cables]] a list of tensions belongs to [study] kind = "ramp".')
-    if isinstance(tension, float | int):
-        return Constant(float(tension))
-    return _table(path, tension.file) if isinstance(tension, TableFile) else tension
+    return _profile(tension, path, "tension")
+
+
+def _profile(given: Any, path: Path, quantity: str) -> Profile:
+    """A profile from a number, a table in the file, or a CSV file beside it."""
+    if isinstance(given, float | int):
+        return Constant(float(given))
+    return _table(path, given.file, quantity) if isinstance(given, TableFile) else given
+
+
+def _load(load: LoadTable) -> DiskLoad:
+    return DiskLoad(load.disk, load.force, load.moment, driven=load.factor is not None)
 
 
 def _repeated(ramps: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
@@ -298,19 +330,24 @@ def _repeated(ramps: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], 
     return tuple(values * longest if len(values) == 1 else values for values in ramps)
 
 
-def _table(scenario: Path, name: str) -> Profile:
-    """Read a table profile: CSV with the header ``time,tension``, s and N."""
+def _table(scenario: Path, name: str, quantity: str) -> Profile:
+    """Read a table profile: CSV with the header ``time,tension`` (s, N) or ``time,factor``."""
     folder = scenario.parent.resolve()
     path = (folder / name).resolve()
     if not path.is_relative_to(folder):
-        raise InputError(f"[[cables]] tension: the table '{name}' lies outside the scenario's folder.")
+        raise InputError(f"{quantity}: the table '{name}' lies outside the scenario's folder.")
     rows = list(csv.reader(_read(path).splitlines()))
-    if not rows or [cell.strip() for cell in rows[0]] != ["time", "tension"]:
+    if not rows or [cell.strip() for cell in rows[0]] != ["time", quantity]:
         found = ",".join(rows[0])[:60] if rows else "nothing"
-        raise InputError(f"table '{name}': the first line must be time,tension; read: {found}")
+        raise InputError(f"table '{name}': the first line must be time,{quantity}; read: {found}")
     values = [_row(name, number, row) for number, row in enumerate(rows[1:], start=1) if row]
     if not values:
         raise InputError(f"table '{name}': no rows below the header.")
+    negative = [row for row, (_, value) in enumerate(values, start=1) if value < 0]
+    if quantity == "tension" and negative:
+        raise InputError(
+            f"table '{name}', row {negative[0]}: a cable cannot push; read {values[negative[0] - 1][1]:g}"
+        )
     try:
         return Table(tuple(t for t, _ in values), tuple(tau for _, tau in values))
     except InputError as error:

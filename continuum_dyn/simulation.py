@@ -137,6 +137,8 @@ def _statics(scenario: Scenario) -> Run:
     solver = StaticSolver(scenario.scene)
     if isinstance(scenario.study, RampStudy):
         tensions = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
+        factors = [profile.initial for profile in scenario.load_factors]
+        tensions = np.hstack([tensions, np.tile(factors, (len(tensions), 1))])
     else:
         tensions = scenario.initial_tension[None, :]
     solver.warm_up()
@@ -193,7 +195,7 @@ def _motion(
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
     end = statics.solve(stretches[-1].tension(np.array([study.duration]))[0], start.coordinates)
-    path = statics.ramp(moved.trajectory.tension, start.coordinates) if study.static_path else []
+    path = statics.ramp(moved.trajectory.inputs, start.coordinates) if study.static_path else []
     run = Run(
         scenario,
         monitor.outcome or Outcome.COMPLETED,

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from continuum_dyn.profiles import Constant, Profile
+from continuum_dyn.profiles import Constant, Profile, lowest
 from statics.checked import STRICT, Positive
 from statics.effects import Effect
 from statics.errors import InputError
@@ -127,8 +127,8 @@ class Scenario:
 
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
     ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
-    program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. Raises
-    ``InputError`` where these do not fit.
+    program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. ``load_factors``
+    has a profile for each driven load. Raises ``InputError`` where these do not fit.
     """
 
     scene: Scene
@@ -137,12 +137,22 @@ class Scenario:
     solver: Solver = dataclasses.field(default_factory=Solver)
     accuracy: Accuracy | None = None
     chooses_mesh: bool = False
+    load_factors: tuple[Profile, ...] = ()
     title: str = ""
     text: str = ""
 
     def __post_init__(self) -> None:
         if len(self.tension) != self.scene.cables:
             raise InputError(f"{len(self.tension)} tensions given for {self.scene.cables} cables.")
+        if len(self.load_factors) != self.scene.driven_loads:
+            raise InputError(
+                f"{len(self.load_factors)} factors given for {self.scene.driven_loads} driven loads."
+            )
+        for name, profile in zip(self.scene.arm.cable_names, self.tension, strict=False):
+            if not isinstance(profile, tuple) and lowest(profile) < 0:
+                raise InputError(
+                    f"cable '{name}': a cable cannot push; its tension comes down to {lowest(profile):g} N."
+                )
         if self.chooses_mesh and self.accuracy is None:
             raise InputError('subsegments = "auto" needs an accuracy to aim at. Add [accuracy] tip, in m.')
         if self.accuracy is not None and not (self.chooses_mesh or isinstance(self.study, MotionStudy)):
@@ -161,7 +171,7 @@ class Scenario:
                     f"tensions of a ramp must be lists of equal length; they have {counts} entries."
                 )
         elif not all(isinstance(profile, Constant) for profile in self.profiles):
-            raise InputError('an "equilibrium" study takes one number for each tension.')
+            raise InputError('an "equilibrium" study takes one number for each tension and load factor.')
 
     def _check_midpoint(self) -> None:
         if self.accuracy is not None:
@@ -188,11 +198,11 @@ class Scenario:
 
     @property
     def profiles(self) -> tuple[Profile, ...]:
-        """The profiles of a study of motion, or the constants of an equilibrium."""
+        """What drives a motion, or constants for an equilibrium: tensions, then factors of loads."""
         profiles = tuple(p for p in self.tension if not isinstance(p, tuple))
         if len(profiles) != len(self.tension):
             raise InputError(f'lists of tensions belong to a "ramp" study; this is "{self.study.kind}".')
-        return profiles
+        return profiles + self.load_factors
 
     @property
     def ramps(self) -> tuple[tuple[float, ...], ...]:
@@ -220,5 +230,5 @@ class Scenario:
 
     @property
     def initial_tension(self) -> np.ndarray:
-        """Tensions of the equilibrium that a motion starts from, shape (cables,), N."""
+        """Inputs of the equilibrium that a motion starts from: tensions, N, then factors of loads."""
         return np.array([profile.initial for profile in self.profiles])

@@ -12,7 +12,8 @@ from statics.equilibria import shape_of
 class Trajectory:
     """A motion at its samples; SI units.
 
-    ``time`` and energies have shape (samples,), ``tension`` (samples, cables), coordinates, curvature and
+    ``time`` and energies have shape (samples,), ``tension`` (samples, cables), ``load_factor`` (samples,
+    driven loads) or None, coordinates, curvature and
     length (samples, segments), poses (samples, disks). ``elongation`` and its rate are None in a scene
     without extension. ``ledger`` holds energies (J), powers (W), and the integrals ``input_work`` and
     ``dissipated_energy`` (J) by glossary name. ``counters`` are the solver's: steps, evaluations, Jacobians,
@@ -21,6 +22,7 @@ class Trajectory:
 
     time: np.ndarray
     tension: np.ndarray
+    load_factor: np.ndarray | None
     bend_angle: np.ndarray
     bend_angle_rate: np.ndarray
     elongation: np.ndarray | None
@@ -38,6 +40,11 @@ class Trajectory:
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk at the last sample."""
         return float(self.disk_x[-1, -1]), float(self.disk_y[-1, -1]), float(self.disk_theta[-1, -1])
+
+    @property
+    def inputs(self) -> np.ndarray:
+        """What drove the motion at its samples: tensions, then factors of loads; shape (samples, inputs)."""
+        return self.tension if self.load_factor is None else np.hstack([self.tension, self.load_factor])
 
     def finite(self) -> "Trajectory":
         """The samples before the first one that has a number which is not finite."""
@@ -65,13 +72,15 @@ def trajectory_of(
 ) -> Trajectory:
     """The trajectory of states (samples, size) at those times under tensions (samples, cables)."""
     arm = dynamics.scene.arm
+    cables = dynamics.scene.cables
     seen = dynamics.observe(states, tension)
     q, u = seen.coordinates, seen.rates
     extends = dynamics.dofs == 2
     elongation = q[:, :, 1] if extends else None
     return Trajectory(
         time=times,
-        tension=tension,
+        tension=tension[:, :cables],
+        load_factor=tension[:, cables:] if dynamics.scene.driven_loads else None,
         bend_angle=q[:, :, 0],
         bend_angle_rate=u[:, :, 0],
         elongation=elongation,

@@ -70,7 +70,8 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
     effects = [effect.name for effect in scene.effects]
-    structure = (recipe.kind, scene.coordinates, scene.cables, scene.spans, scene.tapered, effects)
+    forms = (scene.cables, scene.driven_loads, scene.spans, scene.tapered)
+    structure = (recipe.kind, scene.coordinates, forms, effects)
     sources = [_digest(file, file.stat().st_mtime_ns) for file in recipe.sources]
     sources += [_effect_digest(effect) for effect in scene.effects]
     return hashlib.sha256(repr((structure, _versions(), sources)).encode()).hexdigest()[:24]

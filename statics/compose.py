@@ -23,9 +23,9 @@ HEADER = '''"""{title}
 
 Generated; a change made here is lost. Coordinates of a segment: {coordinates}.
 Effects: {effects}.
-Arguments: q, u, w (n, coordinates): coordinates, rates, accelerations; tension (cables,), N;
-segments (n, SEGMENT_COLUMNS), disks (n, DISK_COLUMNS): parameters; chain (n, CHAIN_COLUMNS): what one
-sweep leaves for the next. SI units.
+Arguments: q, u, w (n, coordinates): coordinates, rates, accelerations; tension (cables,), N, then the
+factors of loads that change; segments (n, SEGMENT_COLUMNS), disks (n, DISK_COLUMNS): parameters; chain
+(n, CHAIN_COLUMNS): what one sweep leaves for the next. SI units.
 """
 
 import math
@@ -133,7 +133,9 @@ def _columns(forces: SceneForces, steps: Sequence[Step], bodies: list[_Body]) ->
     ):
         text |= {s: f"{array}[i, {k}]" for k, s in enumerate(symbols)}
         text |= {symbol(f"{s}_change"): f"{array}_change[i, {k}]" for k, s in enumerate(symbols)}
-    text |= {symbol(f"tension_{c + 1}"): f"tension[{c}]" for c in range(forces.segment.number_of_cables)}
+    cables = forces.segment.number_of_cables
+    text |= {symbol(f"tension_{c + 1}"): f"tension[{c}]" for c in range(cables)}
+    text |= {load.factor: f"tension[{cables + k}]" for k, load in enumerate(forces.disk.driven_loads)}
     owner = _owners(steps)
     for step in steps:
         for array, values in step.stores.items():

@@ -80,7 +80,10 @@ class StaticSolver:
         self.disks = self.scene.table("disk", self.kernel.DISK_COLUMNS)
 
     def solve(self, tension: np.ndarray, start: np.ndarray | None = None) -> Equilibrium:
-        """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default."""
+        """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default.
+
+        ``tension`` holds the scene's inputs: the tensions of its cables, then the factors of driven loads.
+        """
         arm = self.scene.arm
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
         ended, iterations = self.kernel.find_equilibrium(
@@ -94,7 +97,7 @@ class StaticSolver:
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(
             outcome=_OUTCOMES[ended],
-            tension=tension,
+            tension=tension[: self.scene.cables],
             bend_angle=q[:, 0],
             elongation=elongation,
             **shape_of(arm, q[:, 0], elongation),
@@ -119,7 +122,7 @@ class StaticSolver:
 
     def warm_up(self) -> None:
         """Compile the kernel, or load it compiled, so that what follows is solving alone."""
-        self.solve(np.zeros(self.scene.cables))
+        self.solve(np.zeros(self.scene.inputs))
 
 
 def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, np.ndarray]:

@@ -99,7 +99,7 @@ def exact_rod(scene: Scene, tension: object = None) -> RodShape:
     not fit and for effects that the rod does not know, ``RodError`` where it buckles, snaps or comes to
     the end of its geometry before the full loads are on.
     """
-    values = scene.check_tension(tension)
+    values = scene.check_tension(tension)[: scene.cables]
     _check(scene.at_rest)
     rod = _rod(scene, values)
     loads = _follow_loads(rod)
@@ -122,6 +122,8 @@ def _check(scene: Scene) -> None:
         )
     if scene.arm.tapered or any(values is not None for values in vars(scene.arm.each).values()):
         raise InputError("the exact rod knows arms of equal segments only.")
+    if scene.driven_loads:
+        raise InputError("the exact rod does not know loads that change in time.")
     if scene.arm.core_density is not None:
         raise InputError("the exact rod has no mass of its own: it does not know core_density.")
     if not scene.has(Bending.name):

@@ -59,6 +59,12 @@ moment               | -     | N m    | moment on a disk, positive counter-clock
 load_force_x         | F_x   | N      | sum of the dead forces on a disk, along x
 load_force_y         | F_y   | N      | sum of the dead forces on a disk, along y
 load_moment          | M     | N m    | sum of the moments on a disk
+load_factor          | f     | 1      | what a load that changes in time is multiplied by
+factor               | f     | 1      | what a load that changes in time is multiplied by
+driven_force_x       | F_x   | N      | force that a load factor multiplies, along x
+driven_force_y       | F_y   | N      | force that a load factor multiplies, along y
+driven_moment        | M     | N m    | moment that a load factor multiplies
+load                 | -     | 1      | number of a load that changes in time
 retardation_time     | t_r   | s      | Kelvin-Voigt viscosity over Young's modulus, eta / E
 
 time                 | -     | s      | time

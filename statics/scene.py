@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from statics.arm import Arm
-from statics.effects import Effect
+from statics.effects import DiskLoads, Effect
 from statics.errors import InputError
 
 
@@ -56,6 +56,16 @@ class Scene:
         return len(self.arm.cables) if self.has("cables") else 0
 
     @property
+    def driven_loads(self) -> int:
+        """Number of the loads that change in time."""
+        return sum(effect.driven for effect in self.effects if isinstance(effect, DiskLoads))
+
+    @property
+    def inputs(self) -> int:
+        """How many numbers drive the scene: the tensions of its cables, then the factors of driven loads."""
+        return self.cables + self.driven_loads
+
+    @property
     def spans(self) -> bool:
         """Whether cables run past nodes that are not disks: then they join poses further apart."""
         return self.cables > 0 and self.arm.subsegments > 1
@@ -83,7 +93,7 @@ class Scene:
         return table
 
     def check_tension(self, tension: object) -> np.ndarray:
-        """Tensions as an array of shape (cables,), N.
+        """Inputs of the scene at these tensions, shape (cables,), N; the factors of driven loads are 1.
 
         Raises ``InputError`` unless there is one finite, non-negative number for each cable.
         """
@@ -92,4 +102,4 @@ class Scene:
             raise InputError(f"{values.size} tensions given; the scene has {self.cables} cables in play.")
         if not (np.isfinite(values).all() and (values >= 0).all()):
             raise InputError(f"tensions must be finite and not negative; given: {values.tolist()}.")
-        return values
+        return np.append(values, np.ones(self.driven_loads))

@@ -93,6 +93,14 @@ class SegmentSymbols:
         return CableSymbols(_tension(number), sp.sqrt(along**2 + across**2) if self.tapered else along, along)
 
 
+class DrivenLoad(NamedTuple):
+    """A load on a disk that changes in time: a factor, and what it multiplies."""
+
+    factor: Any
+    force: tuple[Any, Any]
+    moment: Any
+
+
 class SpanSymbols:
     """The core from one disk to the next where several segments make it: the poses of its two ends.
 
@@ -131,7 +139,15 @@ class SpanSymbols:
 class DiskSymbols:
     """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters."""
 
-    def __init__(self) -> None:
+    def __init__(self, driven_loads: int = 0) -> None:
+        self.driven_loads = [
+            DrivenLoad(
+                symbol(f"load_factor_{number}"),
+                (symbol(f"driven_force_x_{number}"), symbol(f"driven_force_y_{number}")),
+                symbol(f"driven_moment_{number}"),
+            )
+            for number in range(1, driven_loads + 1)
+        ]
         self.position = (symbol("x"), symbol("y"))
         self.angle = symbol("theta")
         self.velocity = (symbol("velocity_x"), symbol("velocity_y"))

@@ -115,7 +115,10 @@ def derive_statics(scene: Scene) -> SceneForces:
 
 def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
     """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
-    segment, disk = SegmentSymbols(scene.coordinates, scene.cables, scene.tapered), DiskSymbols()
+    segment, disk = (
+        SegmentSymbols(scene.coordinates, scene.cables, scene.tapered),
+        DiskSymbols(scene.driven_loads),
+    )
     on_segment = collect(scene.effects, "segment", segment)
     on_disk = forces_at(collect(scene.effects, "disk", disk), disk)
     if not scene.spans:

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.integrators import METHODS
-from continuum_dyn.profiles import TIME_RESOLUTION, Constant, Profile, Ramp, Sine, Step, Table, spans
+from continuum_dyn.profiles import TIME_RESOLUTION, Constant, Profile, Ramp, Sine, Step, Table, lowest, spans
 from continuum_dyn.study import Method, MotionStudy, Solver
 from statics import InputError
 
@@ -98,14 +98,37 @@ def test_motion_starts_from_the_equilibrium_before_a_step_at_zero() -> None:
     "wrong",
     [
         lambda: Ramp(0.0, 1.0, 1.0, 1.0),
-        lambda: Sine(1.0, 1.5, 2.0),
         lambda: Table((0.0, 1.0, 0.5), (0.0, 1.0, 2.0)),
         lambda: Table((0.0, 1.0), (0.0,)),
         lambda: Table((0.0, 5e-324), (0.0, 1.0)),
-        lambda: Step(-1.0, 1.0),
         lambda: Constant(float("nan")),
     ],
 )
 def test_profiles_that_cannot_be_are_refused(wrong: Callable[[], Profile]) -> None:
     with pytest.raises((InputError, ValidationError)):
         wrong()
+
+
+@pytest.mark.parametrize(
+    ("profile", "least"),
+    [
+        (Constant(-2.0), -2.0),
+        (Step(1.0, -1.0), -1.0),
+        (Ramp(3.0, 1.0, 0.0, 1.0), 1.0),
+        (Sine(1.0, -1.5, 2.0), -0.5),
+        (Table((0.0, 1.0), (2.0, -3.0)), -3.0),
+    ],
+)
+def test_lowest_value_of_a_profile(profile: Profile, least: float) -> None:
+    assert lowest(profile) == least
+    values = np.concatenate(
+        [span.tension(np.linspace(span.start, span.end, 999)) for span in spans((profile,), 2.0)]
+    )
+    assert values.min() == pytest.approx(least, abs=1e-4)
+
+
+def test_cable_that_would_push_is_refused() -> None:
+    scene = moving(rone2012())
+    for profile in (Sine(1.0, 1.5, 2.0), Step(1.0, -1.0), Constant(-0.1)):
+        with pytest.raises(InputError, match="cannot push"):
+            Scenario(scene, (profile,), MotionStudy(1.0))

@@ -57,7 +57,7 @@ def test_every_scenario_of_the_repository_loads_and_opens_with_what_it_shows(pat
         ('preset = "rone2012"', "disks = 4\ndisk_spacing = 0.02", "'bending' needs the arm's youngs_modulus"),
         ("\ninertia = {}", "", "needs inertia"),
         ("duration = 1.0", "duration = -1.0", "greater than 0; read -1.0"),
-        ("after = 1.0", "after = -1.0", "greater than or equal to 0; read -1.0"),
+        ("after = 1.0", "after = -1.0", "a cable cannot push; its tension comes down to -1 N"),
         ("0.008", "nan", "finite number; read nan"),
         ("1.2e-3", "inf", "finite number; read inf"),
         ("0.008", '"0.008"', "valid number; read '0.008'"),

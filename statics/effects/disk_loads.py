@@ -1,4 +1,4 @@
-"""Dead forces and moments on disks: they keep their direction as the arm moves."""
+"""Dead forces and moments on disks: they keep their direction as the arm moves, but may change in time."""
 
 from dataclasses import field
 from typing import Annotated, Any, ClassVar
@@ -15,11 +15,19 @@ from statics.errors import InputError
 
 @dataclass(frozen=True, config=STRICT)
 class DiskLoad:
-    """A force (N) at the centre of one disk and a moment (N m) on it."""
+    """A force (N) at the centre of one disk and a moment (N m) on it.
+
+    Those of a ``driven`` load are multiplied by a factor that is an input of the motion, as tensions are.
+    """
 
     disk: DiskNumber
     force: Vector = (0.0, 0.0)
     moment: float = 0.0
+    driven: bool = False
+
+
+DRIVEN = ("driven_force_x", "driven_force_y", "driven_moment")
+"""What a driven load's factor multiplies."""
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -38,22 +46,38 @@ class DiskLoads:
     source: ClassVar[str] = "Rone 2012, Eq. 7"
 
     def pairs(self, at: Any) -> list[Pair]:
-        """Two pairs: force and position, moment and angle."""
-        return [
+        """Two pairs, force and position, moment and angle; and two more for each driven load."""
+        pairs = [
             Pair((at.load_force_x, at.load_force_y), at.position),
             Pair(at.load_moment, at.angle),
         ]
+        for factor, (force_x, force_y), moment in at.driven_loads:
+            pairs.append(Pair((factor * force_x, factor * force_y), at.position))
+            pairs.append(Pair(factor * moment, at.angle))
+        return pairs
+
+    @property
+    def driven(self) -> int:
+        """Number of the loads that are driven."""
+        return sum(load.driven for load in self.loads)
 
     def columns(self, arm: Arm) -> dict[str, np.ndarray]:
-        """Sums over the loads of each disk, shape (segments,): zero on nodes between disks.
+        """Sums over the constant loads of each disk, and each driven load; shape (segments,).
 
-        Raises ``InputError`` for a disk beyond the arm.
+        Zero on nodes between disks. Raises ``InputError`` for a disk beyond the arm.
         """
-        total = np.zeros((3, arm.disks))
+        constant, columns = np.zeros((3, arm.disks)), {}
+        number = 0
         for load in self.loads:
             if load.disk > arm.disks:
                 raise InputError(
                     f"load on disk {load.disk}: beyond the arm. Allowed: disks 1 to {arm.disks}."
                 )
-            total[:, load.disk - 1] += (*load.force, load.moment)
-        return dict(zip(self.quantities, map(arm.at_disks, total), strict=True))
+            target = constant
+            if load.driven:
+                number, target = number + 1, np.zeros((3, arm.disks))
+            target[:, load.disk - 1] += (*load.force, load.moment)
+            if load.driven:
+                names = (f"{name}_{number}" for name in DRIVEN)
+                columns |= dict(zip(names, map(arm.at_disks, target), strict=True))
+        return columns | dict(zip(self.quantities, map(arm.at_disks, constant), strict=True))
