@@ -212,6 +212,11 @@ class Scenario:
             chooses_mesh=False,
         )
 
+    def without(self, effect: str) -> "Scenario":
+        """The same without the effect of that name, and without tensions if it is ``cables``."""
+        scene = self.scene.without(effect)
+        return dataclasses.replace(self, scene=scene, tension=self.tension if scene.cables else ())
+
     @property
     def settled_within(self) -> float:
         """Distance (m) from the final equilibrium, and speed (m/s), below which the tip has settled."""
@@ -220,5 +225,5 @@ class Scenario:
 
     @property
     def initial_tension(self) -> np.ndarray:
-        """Tensions of the equilibrium that a motion starts from, shape (cables,), N."""
-        return np.array([profile.initial for profile in self.profiles])
+        """Tensions of the equilibrium that a motion or a ramp starts from, shape (cables,), N."""
+        return np.array([t[0] if isinstance(t, tuple) else t.initial for t in self.tension], dtype=float)
