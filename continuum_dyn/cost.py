@@ -7,7 +7,7 @@ the machine-independent work, in segment evaluations.
 import statistics
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,7 +22,6 @@ from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.exact_rod import RodError, exact_rod
-from statics.scene import Scene
 
 TOLERANCES: dict[Method, tuple[float, ...]] = {
     "chain": (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
@@ -81,14 +80,16 @@ class MeshPrice:
 class Effect:
     """What leaving an effect out does: to the tip (m, largest over the samples), to time, to stiffness.
 
-    ``time_ratio`` is the time without it over the time with it; ``fastest_rate`` is the largest rate (1/s)
-    of the linearized motion without it. All are None where there is no such motion without it.
+    ``time_ratio`` is the time without it over the time with it, ``seconds`` the latter less the former;
+    ``fastest_rate`` is the largest rate (1/s) of the linearized motion without it. All are None where there
+    is no such motion without it.
     """
 
     name: str
     tip_shift: float | None = None
     time_ratio: float | None = None
     fastest_rate: float | None = None
+    seconds: float | None = None
 
 
 @dataclass(frozen=True)
@@ -117,10 +118,14 @@ class Cost:
 
 
 class Motion:
-    """A scenario's motion, ready to be integrated by any method."""
+    """A scenario's motion, ready to be integrated by any method.
+
+    Raises ``InputError`` for a study without motion, and where there is no equilibrium to start from.
+    """
 
     def __init__(self, scenario: Scenario) -> None:
-        assert isinstance(scenario.study, MotionStudy)
+        if not isinstance(scenario.study, MotionStudy):
+            raise InputError(f'cost is asked of a motion; this is a study of kind "{scenario.study.kind}".')
         self.dynamics = Dynamics(scenario.scene)
         self.stretches = spans(scenario.profiles, scenario.study.duration)
         self.samples = np.linspace(0.0, scenario.study.duration, scenario.study.samples)
@@ -160,8 +165,6 @@ def measure(scenario: Scenario, progress: Callable[[str], None] = lambda _: None
 
     Raises ``InputError`` for a study without motion, or where the references do not reach its end.
     """
-    if not isinstance(scenario.study, MotionStudy):
-        raise InputError(f'cost is asked of a motion; this is a study of kind "{scenario.study.kind}".')
     motion = Motion(scenario)
     progress("references")
     references = [motion.run(solver) for solver in REFERENCES]
@@ -174,7 +177,7 @@ def measure(scenario: Scenario, progress: Callable[[str], None] = lambda _: None
         prices=tuple(prices),
         meshes=tuple(meshes),
         no_meshes=no_meshes,
-        effects=tuple(_effects(scenario, motion, progress)),
+        effects=tuple(effects(scenario, motion, progress)),
         fastest_rate=motion.fastest_rate(),
         reference_gap=tip_distance(references[0], references[1]),
         over_budget=over_budget,
@@ -253,7 +256,9 @@ def _in_order(methods: Iterable[str]) -> list[Method]:
     return [method for method in TOLERANCES if method in methods]
 
 
-def _effects(scenario: Scenario, motion: Motion, progress: Callable[[str], None]) -> list[Effect]:
+def effects(
+    scenario: Scenario, motion: Motion, progress: Callable[[str], None] = lambda _: None
+) -> list[Effect]:
     """Each effect left out in turn, at a tolerance at which the integration's own error does not show."""
     solver = Solver("chain", rtol=1e-9, atol=1e-12)
     whole, seconds = motion.run(solver), motion.seconds(solver)
@@ -264,7 +269,7 @@ def _effects(scenario: Scenario, motion: Motion, progress: Callable[[str], None]
             continue
         progress(f"without {effect.name}")
         try:
-            without = Motion(_without(scenario, effect.name))
+            without = Motion(scenario.without(effect.name))
         except InputError:
             found.append(Effect(effect.name))
             continue
@@ -273,16 +278,6 @@ def _effects(scenario: Scenario, motion: Motion, progress: Callable[[str], None]
         if trajectory is None:
             found.append(Effect(effect.name))
             continue
-        shift, ratio = tip_distance(trajectory, whole), without.seconds(solver) / seconds
-        found.append(Effect(effect.name, shift, ratio, without.fastest_rate()))
+        shift, spent = tip_distance(trajectory, whole), without.seconds(solver)
+        found.append(Effect(effect.name, shift, spent / seconds, without.fastest_rate(), seconds - spent))
     return found
-
-
-def _without(scenario: Scenario, name: str) -> Scenario:
-    scene = Scene(scenario.scene.arm, (effect for effect in scenario.scene.effects if effect.name != name))
-    return replace(
-        scenario,
-        scene=scene,
-        tension=scenario.tension if scene.cables else (),
-        load_factors=scenario.load_factors if scene.driven_loads else (),
-    )

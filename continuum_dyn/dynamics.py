@@ -36,17 +36,18 @@ class Dynamics:
     """The motion kernel and the numbers of one scene.
 
     The state is y = (q, u, input_work, dissipated_energy); q and u hold each segment's coordinates and
-    rates in turn. Raises ``InputError`` for a scene without inertia: it has no acceleration.
+    rates in turn. ``load`` makes the kernel: compiled, or interpreted. Raises ``InputError`` for a scene
+    without inertia: it has no acceleration.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, load: codegen.Loader = codegen.load) -> None:
         if not scene.has("inertia"):
             raise InputError("motion needs the effect 'inertia'. Add inertia = {} to [effects].")
         self.scene = scene
         self.dofs = len(scene.coordinates)
         self.size = scene.arm.segments * self.dofs
         self.state_size = 2 * self.size + 2
-        self.kernel = codegen.load(scene, RECIPE)
+        self.kernel = load(scene, RECIPE)
         self.segments = scene.table("segment", self.kernel.SEGMENT_COLUMNS)
         self.disks = scene.table("disk", self.kernel.DISK_COLUMNS)
 
@@ -117,6 +118,17 @@ class Dynamics:
         shape = (len(states), self.scene.arm.segments, self.dofs)
         q, u = states[:, : self.size], states[:, self.size : 2 * self.size]
         return np.ascontiguousarray(q).reshape(shape), np.ascontiguousarray(u).reshape(shape)
+
+    def displacements(self, y: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """First-order change of the disks' poses by that of the coordinates, shape (segments, dofs).
+
+        Shape (disks, 3), m, m, rad: the velocities under rates of that size.
+        """
+        q, _ = self.split(y[None, : 2 * self.size])
+        pose, velocity = np.empty((2, 1, self.scene.arm.segments, 3))
+        ledger, tension = np.empty((1, len(LEDGER))), np.zeros((1, self.scene.cables))
+        self.kernel.observe(q, change[None], tension, self.segments, self.disks, pose, velocity, ledger)
+        return velocity[0, self.scene.arm.disk_nodes]
 
     def observe(self, states: np.ndarray, tension: np.ndarray) -> Observation:
         """Poses, tip speed, energies and powers at states (samples, size) under tension (samples, cables)."""

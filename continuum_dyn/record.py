@@ -232,8 +232,9 @@ def _write_group(
         "segment": np.arange(1, arm.segments + 1),
         "disk": np.arange(1, arm.disks + 1),
         "cable": _names(scenario),
-        "load": np.arange(1, scenario.scene.driven_loads + 1),
     }
+    if "load_factor" in columns:
+        scales["load"] = np.arange(1, scenario.scene.driven_loads + 1)
     for name, values in scales.items():
         _write_scale(group, name, values)
     for name, values in columns.items():

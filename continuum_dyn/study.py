@@ -222,6 +222,16 @@ class Scenario:
             chooses_mesh=False,
         )
 
+    def without(self, effect: str) -> "Scenario":
+        """The same without the effect of that name, and without what drove it."""
+        scene = self.scene.without(effect)
+        return dataclasses.replace(
+            self,
+            scene=scene,
+            tension=self.tension if scene.cables else (),
+            load_factors=self.load_factors if scene.driven_loads else (),
+        )
+
     @property
     def settled_within(self) -> float:
         """Distance (m) from the final equilibrium, and speed (m/s), below which the tip has settled."""
@@ -230,5 +240,6 @@ class Scenario:
 
     @property
     def initial_tension(self) -> np.ndarray:
-        """Inputs of the equilibrium that a motion starts from: tensions, N, then factors of loads."""
-        return np.array([profile.initial for profile in self.profiles])
+        """Inputs of the equilibrium that a study starts from: tensions, N, then factors of loads."""
+        given = (*self.tension, *self.load_factors)
+        return np.array([t[0] if isinstance(t, tuple) else t.initial for t in given], dtype=float)

@@ -46,6 +46,10 @@ class Recipe:
     sources: tuple[Path, ...]
 
 
+Loader = Callable[[Scene, Recipe], Any]
+"""``load`` or ``load_interpreted``."""
+
+
 def load(scene: Scene, recipe: Recipe) -> Any:
     """The compiled kernel module for the scene's structure.
 
@@ -58,10 +62,9 @@ def load(scene: Scene, recipe: Recipe) -> Any:
 
 
 def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
-    """The same functions as plain Python, for tests and for reading along in a debugger."""
-    text = recipe.write(scene).replace(
-        "from numba import njit\n", "njit = lambda **_: lambda function: function\n"
-    )
+    """The same functions as plain Python: for tests, for a debugger, and for what is asked only once."""
+    text = _kept_text(scene, recipe, kernel_key(scene, recipe)).read_text(encoding="utf-8")
+    text = text.replace("from numba import njit\n", "njit = lambda **_: lambda function: function\n")
     module = ModuleType(f"interpreted_{recipe.kind}")
     exec(compile(text, module.__name__, "exec"), module.__dict__)
     return module

@@ -71,11 +71,14 @@ class Equilibrium:
 
 
 class StaticSolver:
-    """The kernel and the numbers of one scene, for many equilibria in a row."""
+    """The kernel and the numbers of one scene, for many equilibria in a row.
 
-    def __init__(self, scene: Scene) -> None:
+    ``load`` makes the kernel: compiled, or interpreted.
+    """
+
+    def __init__(self, scene: Scene, load: codegen.Loader = codegen.load) -> None:
         self.scene = scene.at_rest
-        self.kernel = codegen.load(self.scene, RECIPE)
+        self.kernel = load(self.scene, RECIPE)
         self.segments = self.scene.table("segment", self.kernel.SEGMENT_COLUMNS)
         self.disks = self.scene.table("disk", self.kernel.DISK_COLUMNS)
 

@@ -90,6 +90,14 @@ gravity_energy       | -     | J      | potential energy of the masses, zero at 
 input_power          | -     | W      | power of the cables and of the loads on disks
 dissipated_power     | -     | W      | power lost to damping
 input_work           | -     | J      | time integral of the input power since the start
+mode                 | -     | 1      | number of a mode of small motion, the lowest first
+frequency            | f     | Hz     | frequency of a mode without its damping
+damping_ratio        | zeta  | 1      | mean decay rate of a mode over 2 pi times its frequency
+decay_rate           | -     | 1/s    | rate at which a mode dies away, in the end
+fast_decay_rate      | -     | 1/s    | rate of the other exponential of a mode that does not swing
+shape_x              | -     | 1      | displacement of a disk in a mode, along x, per largest of any disk
+shape_y              | -     | 1      | displacement of a disk in a mode, along y, per largest of any disk
+shape_theta          | -     | rad/m  | turn of a disk in a mode, per largest displacement of any disk
 price                | -     | 1      | number of a way to compute a motion
 method               | -     | 1      | name of an integrator
 rtol                 | -     | 1      | relative tolerance of an integrator

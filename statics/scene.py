@@ -45,6 +45,10 @@ class Scene:
         """The same scene with only those effects that act at rest."""
         return Scene(self.arm, (effect for effect in self.effects if effect.acts_at_rest))
 
+    def without(self, name: str) -> "Scene":
+        """The same scene without the effect of that name."""
+        return Scene(self.arm, (effect for effect in self.effects if effect.name != name))
+
     @cached_property
     def coordinates(self) -> tuple[str, ...]:
         """Names of one segment's coordinates: ``bend_angle``, and ``elongation`` if it can extend."""

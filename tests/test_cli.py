@@ -12,6 +12,7 @@ import pytest
 from conftest import SCENARIOS
 from typer.testing import CliRunner
 
+from continuum_dyn import cost
 from continuum_dyn.cli import app
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
@@ -105,6 +106,48 @@ def test_explain_shows_effects_coordinates_and_equations() -> None:
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
+def test_explain_says_what_each_effect_adds_and_how_the_arm_at_rest_swings() -> None:
+    lines = runner.invoke(app, ["explain", STEP]).stdout.splitlines()
+    (added,) = (line.split() for line in lines if line.startswith("  extension") and " to " in line)
+    _, coordinate, operated, slowest, _, fastest = added
+    assert (coordinate, slowest) == ("elongation", "145")
+    assert int(operated) > 100
+    assert float(fastest) < 1e5  # bending alone; with extension 2.87e7 1/s
+    assert "  1            23.071 Hz          0.087          79.3 ms" in lines
+    assert lines[-1].endswith("--measure.")
+
+
+def test_explain_of_statics_counts_operations_and_says_why_there_are_no_modes() -> None:
+    result = runner.invoke(app, ["explain", str(SCENARIOS / "tension_ramp.toml")])
+    assert result.exit_code == 0
+    assert "No modes: motion needs the effect 'inertia'" in result.stdout
+    assert "all of them" in result.stdout
+    assert max(map(len, result.stdout.splitlines())) <= 80
+
+
+def test_explain_names_what_can_be_left_out_at_the_accuracy_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    measured = [
+        cost.Effect("bending"),
+        cost.Effect("gravity", 6e-4, 1.1, 2.87e7, -1e-4),
+        cost.Effect("extension", 8e-7, 0.7, 3.2e4, 1e-3),
+    ]
+    monkeypatch.setattr(cost, "effects", lambda *_: measured)
+    loose = runner.invoke(app, ["explain", STEP, "--measure"]).stdout
+    assert "Can be left out: extension. Allowed: 80 um" in loose
+    assert "1 ms, 30%" in loose
+    tight = runner.invoke(app, ["explain", STEP.replace(".toml", "_within_1_um.toml"), "--measure"]).stdout
+    assert "Can be left out: extension. Allowed: 1 um, [accuracy] tip" in tight
+    assert max(map(len, loose.splitlines())) <= 80
+
+
+def test_explain_measures_motions_only() -> None:
+    result = runner.invoke(app, ["explain", str(SCENARIOS / "tension_ramp.toml"), "--measure"])
+    assert result.exit_code == 2
+    assert '"ramp"' in result.stderr
+
+
 def test_explain_writes_latex() -> None:
     result = runner.invoke(app, ["explain", STEP, "--latex"])
     assert r"P = - \frac{EA \dot{e} t_{r}}{L_{0}}" in result.stdout
@@ -116,7 +159,7 @@ def test_play_refuses_what_is_not_a_log(tmp_path: Path) -> None:
     assert "no such file" in result.stderr
 
 
-@pytest.mark.parametrize("name", ["run", "play", "explain", "cost", "reproduce"])
+@pytest.mark.parametrize("name", ["run", "play", "explain", "modes", "cost", "reproduce"])
 def test_help_fits_80_columns(name: str) -> None:
     result = runner.invoke(app, [name, "--help"])
     assert result.exit_code == 0

@@ -36,7 +36,7 @@ def brief(monkeypatch: pytest.MonkeyPatch) -> Scenario:
 @pytest.fixture
 def prices(brief: Scenario, monkeypatch: pytest.MonkeyPatch) -> cost.Cost:
     """Its cost without the effects, each of which is a structure to compile."""
-    monkeypatch.setattr(cost, "_effects", lambda *_: [])
+    monkeypatch.setattr(cost, "effects", lambda *_: [])
     return cost.measure(brief)
 
 
@@ -85,7 +85,7 @@ def test_meshes_are_held_against_the_exact_rod(prices: cost.Cost) -> None:
 def test_scene_that_the_exact_rod_does_not_know_has_no_meshes(
     brief: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cost, "_effects", lambda *_: [])
+    monkeypatch.setattr(cost, "effects", lambda *_: [])
     heavy = replace(brief.scene.arm, core_density=7850.0)
     found = cost.measure(replace(brief, scene=replace(brief.scene, arm=heavy)))
     assert found.meshes == ()

@@ -39,7 +39,9 @@ def test_constant_factor_is_a_constant_load(shaken: Scenario) -> None:
 def test_work_of_a_driven_load_is_booked(shaken: Scenario) -> None:
     """Factor times force times displacement, by the trapezoidal rule over fine samples."""
     load = DiskLoad(4, (0.0, 5e-3), driven=True)
-    fine = replace(with_loads(shaken, load, factors=(Sine(0.0, 1.0, 20.0),)), solver=Solver("chain", 1e-11, 1e-13))
+    fine = replace(
+        with_loads(shaken, load, factors=(Sine(0.0, 1.0, 20.0),)), solver=Solver("chain", 1e-11, 1e-13)
+    )
     found = motion(replace(fine, study=MotionStudy(0.05, samples=5001)))
     assert found.load_factor is not None
     np.testing.assert_allclose(found.load_factor[:, 0], np.sin(40 * np.pi * found.time), atol=1e-12)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.show import length, make_folder, table
+from continuum_dyn.commands.show import length, make_folder, plain_table, with_status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,7 +33,7 @@ def cost(
 
     scenario = load_scenario(file)
     make_folder(out)
-    measured = _with_status(scenario.title, lambda progress: measure(scenario, progress))
+    measured = with_status(scenario.title, lambda progress: measure(scenario, progress))
     stem = out / f"{file.stem}_cost"
     _write_csv(measured, stem.with_suffix(".csv"))
     _write_mesh_csv(measured, out / f"{file.stem}_cost_mesh.csv")
@@ -41,16 +41,6 @@ def cost(
     plots.cost(measured).savefig(stem.with_suffix(".png"), dpi=130)
     _show(measured)
     typer.echo(f"written: {stem}.csv, _mesh.csv, .h5, .png")
-
-
-def _with_status(title: str, work: Any) -> Any:
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        return work(lambda _: None)
-    with console.status(title) as status:
-        return work(lambda what: status.update(f"{title}: {what}"))
 
 
 def _write_csv(measured: "Cost", path: Path) -> None:
@@ -87,7 +77,7 @@ def _show(measured: "Cost") -> None:
 
 
 def _price_table(measured: "Cost") -> Any:
-    prices = table(measured.scenario.title, "method", "rtol", "tip error", "time", "steps", "work")
+    prices = plain_table(measured.scenario.title, "method", "rtol", "tip error", "time", "steps", "work")
     for p in measured.prices:
         row = (length(p.error), f"{p.seconds * 1e3:.3g} ms", str(p.steps), str(p.segment_evaluations))
         prices.add_row(p.method, f"{p.rtol:.0e}", *row)
@@ -98,7 +88,7 @@ def _price_table(measured: "Cost") -> Any:
 
 def _mesh_table(meshes: "Sequence[MeshPrice]") -> Any:
     columns = ("subsegments", "tip", "order", "angle", "order", "from two", "order", "statics", "motion")
-    made = table("Meshes", *columns)
+    made = plain_table("Meshes", *columns)
     for before, mesh in zip((None, *meshes), meshes, strict=False):
         names = ("tip_error", "angle_error", "limit_error")
         errors = [getattr(mesh, name) for name in names]
@@ -122,7 +112,7 @@ def _order(before: float | None, error: float | None) -> str:
 
 
 def _effect_table(measured: "Cost") -> Any:
-    effects = table("Without an effect", "left out", "tip moves by", "time", "fastest rate")
+    effects = plain_table("Without an effect", "left out", "tip moves by", "time", "fastest rate")
     effects.add_row("(nothing)", "", "1", f"{measured.fastest_rate:.3g} 1/s")
     for e in measured.effects:
         if e.tip_shift is None:
@@ -133,7 +123,7 @@ def _effect_table(measured: "Cost") -> Any:
 
 
 def _frontier_table(measured: "Cost") -> Any:
-    frontier = table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
+    frontier = plain_table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
     for target, p in measured.frontier().items():
         if p is None:
             frontier.add_row(length(target), "not reached")

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
 _DISK_LETTERS = {
@@ -21,8 +22,15 @@ _DISK_LETTERS = {
 def explain(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario file (TOML).", show_default=False)],
     latex: Annotated[bool, typer.Option("--latex", help="Equations as LaTeX.")] = False,
+    measure: Annotated[bool, typer.Option("--measure", help="Measure what can be left out.")] = False,
 ) -> None:
-    """Show the effects in play, the coordinates, and the equations of one segment and one disk."""
+    """Show the effects in play, what each adds, the modes at rest, and the equations.
+
+    With --measure a motion is run without each effect in turn, to say which of them can be left out at the
+    accuracy that is asked for, and what time they cost. The first time each of these is compiled, which
+    takes up to half a minute.
+    """
+    from continuum_dyn.commands.effects import show_additions, show_modes, show_what_to_leave_out
     from continuum_dyn.scenario import load_scenario
 
     scenario = load_scenario(file)
@@ -37,8 +45,28 @@ def explain(
     for effect in scene.effects:
         line = f"  {effect.name:<17} on each {effect.place:<8} {effect.source}"
         typer.echo(fill(line, 79, subsequent_indent=" " * 36))
+    found = _modes(scenario)
+    show_additions(scenario, None if isinstance(found, InputError) else found)
     _print_method(scenario)
+    if isinstance(found, InputError):
+        typer.echo("\n" + fill(f"No modes: {found}", 79))
+    else:
+        show_modes(found)
     _print_equations(scene, latex)
+    if measure:
+        show_what_to_leave_out(scenario)
+    else:
+        typer.echo("\nWhat this scenario could do without: measured if you add --measure.")
+
+
+def _modes(scenario: Any) -> Any:
+    """The modes at rest, or the reason why there are none."""
+    from continuum_dyn.modes import modes_at_rest
+
+    try:
+        return modes_at_rest(scenario)
+    except InputError as reason:
+        return reason
 
 
 def _print_method(scenario: Any) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.show import make_folder, table
+from continuum_dyn.commands.show import make_folder, plain_table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -98,7 +98,7 @@ def _show(found: "Rone2012") -> None:
 def _height_table(found: "Rone2012") -> Any:
     columns = _columns_of_table_2(found)
     names = {**dict.fromkeys(columns), "paper": "virtual work", "paper_finite_elements": "finite elements"}
-    heights = table(
+    heights = plain_table(
         "Table 2: y (um) without tension", "disk", *(title or name for name, title in names.items())
     )
     for i in range(4):
@@ -126,7 +126,7 @@ def _distance_table(found: "Rone2012") -> Any:
     resolved = 100 * 0.5e-6 / away["paper"]
     errors = (TABLE_2_PERCENT_ERROR, digits, resolved, ours)
     titles = ("disk", "program", "exact rod", "paper", "% error", "of digits", "rounding", "against rod")
-    distances = table("Table 2: x (mm), and percent errors", *titles)
+    distances = plain_table("Table 2: x (mm), and percent errors", *titles)
     for i in range(4):
         x = [f"{columns[name][i, 0] * 1e3:.5f}" for name in ("program", "exact rod")]
         paper = f"{columns['paper'][i, 0] * 1e3:.5g}"
@@ -135,7 +135,9 @@ def _distance_table(found: "Rone2012") -> Any:
 
 
 def _tip_table(found: "Rone2012") -> Any:
-    tips = table("Fig. 3 and 4: y of the tip (mm)", "tension", *found.unactuated.by_law, "printed - rod")
+    tips = plain_table(
+        "Fig. 3 and 4: y of the tip (mm)", "tension", *found.unactuated.by_law, "printed - rod"
+    )
     for shapes in (found.unactuated, *found.figure_4):
         apart = shapes.tip_y["printed"] - shapes.tip_y["exact rod"]
         row = [f"{1e3 * height:.4f}" for height in (*shapes.tip_y.values(), apart)]
@@ -150,7 +152,7 @@ def _sign_of(shapes: "Shapes") -> str:
 
 def _curvature_table(found: "Rone2012") -> Any:
     segments = [f"segment {i}" for i in range(1, 5)]
-    curvatures = table("Fig. 3 and 4: curvatures (1/m)", "tension", "law", *segments)
+    curvatures = plain_table("Fig. 3 and 4: curvatures (1/m)", "tension", "law", *segments)
     for shapes in (found.unactuated, *found.figure_4):
         for law, shape in (("printed", shapes.printed), ("program", shapes.program)):
             curvatures.add_row(f"{shapes.tension:g} N", law, *(f"{k:.3f}" for k in shape.curvature))

@@ -1,9 +1,14 @@
-"""What the commands share: a length in its best unit, a table, a folder to write to."""
+"""What the commands share: a length or a time in its best unit, a plain table, progress, a folder."""
 
+from collections.abc import Callable
+from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from statics.errors import LogError
+
+if TYPE_CHECKING:
+    from continuum_dyn.modes import Mode
 
 
 def length(value: float) -> str:
@@ -14,14 +19,19 @@ def length(value: float) -> str:
     return f"{value / 1e-12:.3g} pm"
 
 
-def table(title: str, *columns: str) -> Any:
-    """An empty table of rich's; numbers stand to the right, names in the first column to the left."""
-    from rich.table import Table
+def duration(value: float) -> str:
+    """A time (s) in the unit that reads best."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if abs(value) >= 0.999 * size:
+            return f"{value / size:.3g} {unit}"
+    return f"{value / 1e-9:.3g} ns"
 
-    made = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="dim")
-    for number, column in enumerate(columns):
-        made.add_column(column, justify="left" if number == 0 else "right")
-    return made
+
+def mode_row(mode: "Mode") -> tuple[str, str, str]:
+    """Frequency, damping ratio and decay time of a mode."""
+    creeps = "" if mode.swings else ", creeps"
+    decay_time = duration(mode.decay_time) if isfinite(mode.decay_time) else "never"
+    return f"{mode.frequency:.5g} Hz", f"{mode.damping_ratio:.3g}{creeps}", decay_time
 
 
 def make_folder(folder: Path) -> None:
@@ -35,3 +45,24 @@ def make_folder(folder: Path) -> None:
         raise LogError(
             f"cannot write to the folder {folder}: {error.strerror}. Name another with --out."
         ) from error
+
+
+def plain_table(title: str, *columns: str) -> Any:
+    """A plain table of rich: the first column to the left, the others to the right."""
+    from rich.table import Table
+
+    made = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="dim")
+    for number, column in enumerate(columns):
+        made.add_column(column, justify="left" if number == 0 else "right")
+    return made
+
+
+def with_status(title: str, work: Callable[[Callable[[str], None]], Any]) -> Any:
+    """What ``work`` returns; a terminal shows what it tells the function that it is handed."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        return work(lambda _: None)
+    with console.status(title) as status:
+        return work(lambda what: status.update(f"{title}: {what}"))

@@ -7,12 +7,22 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from continuum_dyn.cost import Cost
+from continuum_dyn.modes import Mode, RestModes
 from continuum_dyn.record import Log
 from continuum_dyn.reproduce import Rone2012, Shapes
 from continuum_dyn.views.backbone import backbone
+from statics.equilibria import shape_of
 from statics.quantities import QUANTITIES
 
 ARC_POINTS = 12
+MOST_SHAPES = 6
+"""Modes that are drawn."""
+SHAPE_REACH = 0.12
+"""Largest displacement of a disk in the picture of a mode, in the arm's length."""
+SMALL_PART = 1e-9
+"""Displacement (m) by which the core's points are differenced: a mode is drawn magnified, not bent double."""
+DISK_HEIGHT = 0.09
+"""Of the disks in the picture of a mode, in the arm's length."""
 STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+")]
 """Lines and markers that can be told apart in black and white."""
 LAWS = {
@@ -66,6 +76,71 @@ def cost(measured: Cost) -> Figure:
         axes.grid(visible=True, which="major", lw=0.4, color="0.8")
     figure.suptitle(f"{measured.scenario.title}: what accuracy costs")
     return figure
+
+
+def modes(found: RestModes) -> Figure:
+    """The arm at rest in grey and the shapes of its lowest modes: one way solid, the other dashed."""
+    shown = found.modes[:MOST_SHAPES]
+    columns = min(3, len(shown))
+    rows = -(-len(shown) // columns)
+    figure = Figure(layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes in grid.flat[len(shown) :]:
+        axes.set_axis_off()
+    for number, (axes, mode) in enumerate(zip(grid.flat, shown, strict=False), start=1):
+        _draw_mode(axes, found, mode)
+        ending = "" if mode.swings else ", creeps"
+        title = f"{number}: {mode.frequency:.5g} Hz, damping ratio {mode.damping_ratio:.2g}{ending}"
+        axes.set_title(title, fontsize=9)
+    for axes in grid[-1]:
+        axes.set_xlabel("x (mm)")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("y (mm)")
+    box = grid[0, 0].dataLim
+    figure.set_size_inches(3.8 * columns, rows * (0.8 + 3.4 * box.height / max(box.width, box.height)) + 0.4)
+    figure.suptitle(f"{found.scenario.title}: modes at rest")
+    return figure
+
+
+def _draw_mode(axes: Any, found: RestModes, mode: Mode) -> None:
+    arm = found.scenario.scene.arm
+    rest = _core(found, 0.0 * mode.coordinates)
+    change = (_core(found, SMALL_PART * mode.coordinates) - rest) / SMALL_PART
+    reach = SHAPE_REACH * arm.total_length
+    disks = slice(None, None, ARC_POINTS * arm.subsegments)
+    theta = np.append(0.0, found.rest.disk_theta)
+    turn = np.append(0.0, mode.shape[:, 2])
+    for part, line, color, width in (
+        (0.0, "-", "0.7", 1.2),
+        (-reach, "--", "0.35", 1.0),
+        (reach, "-", "k", 1.6),
+    ):
+        points = 1e3 * (rest + part * change)
+        axes.plot(*points.T, ls=line, color=color, lw=width)
+        if part >= 0.0:
+            _draw_disks(
+                axes,
+                points[disks],
+                theta + np.arctan(part * turn),
+                1e3 * DISK_HEIGHT * arm.total_length,
+                color,
+            )
+    axes.set_aspect("equal")
+    axes.grid(visible=True, lw=0.3, color="0.85")
+
+
+def _core(found: RestModes, change: np.ndarray) -> np.ndarray:
+    """Points of the core, shape (points, 2), m, by a change of the coordinates from those at rest."""
+    q = found.rest.coordinates + change
+    shape = shape_of(found.scenario.scene.arm, q[None, :, 0], q[None, :, 1] if q.shape[1] == 2 else None)
+    return backbone(shape, np.array([0]), ARC_POINTS)[0]
+
+
+def _draw_disks(axes: Any, centres: np.ndarray, theta: np.ndarray, height: float, color: str) -> None:
+    """Each disk as a bar, so that modes along the arm can be seen."""
+    half = 0.5 * height * np.column_stack([-np.sin(theta), np.cos(theta)])
+    for centre, way in zip(centres, half, strict=True):
+        axes.plot(*np.array([centre - way, centre + way]).T, color=color, lw=1.6)
 
 
 def _draw_meshes(axes: Any, measured: Cost) -> None:

@@ -1,0 +1,89 @@
+"""``continuum-dyn modes``: how the arm at rest swings, and how fast that dies away."""
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from continuum_dyn.commands.show import make_folder, mode_row, plain_table
+
+if TYPE_CHECKING:
+    from continuum_dyn.modes import RestModes
+
+MAX_ROWS = 20
+"""Most modes that are printed; the CSV holds all."""
+COLUMNS = (
+    "mode",
+    "frequency",
+    "damping_ratio",
+    "decay_rate",
+    "fast_decay_rate",
+    "disk",
+    "shape_x",
+    "shape_y",
+    "shape_theta",
+)
+"""Of the CSV, by glossary name."""
+
+
+def modes(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario file (TOML).", show_default=False)],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of what is written.")] = Path("logs"),
+) -> None:
+    """Show the modes of the arm at rest.
+
+    Small motions about the equilibrium that the scenario starts from: frequency, damping ratio, time to die
+    away, shape. The scene needs the effect inertia. Writes DIR/NAME_modes.csv, with the shapes of all modes,
+    and NAME_modes.png, with the first six.
+    """
+    from continuum_dyn.modes import modes_at_rest
+    from continuum_dyn.scenario import load_scenario
+    from continuum_dyn.views import plots
+
+    scenario = load_scenario(file)
+    make_folder(out)
+    found = modes_at_rest(scenario)
+    stem = out / f"{file.stem}_modes"
+    _write_csv(found, stem.with_suffix(".csv"))
+    plots.modes(found).savefig(stem.with_suffix(".png"), dpi=130)
+    _show(found)
+    typer.echo(f"written: {stem}.csv, .png")
+
+
+def _write_csv(found: "RestModes", path: Path) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(COLUMNS)
+        for number, mode in enumerate(found.modes, start=1):
+            slow, fast = (*mode.decay_rates, "")[:2]
+            for disk, shape in enumerate(mode.shape.tolist(), start=1):
+                writer.writerow([number, mode.frequency, mode.damping_ratio, slow, fast, disk, *shape])
+
+
+def _show(found: "RestModes") -> None:
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    console.print(_mode_table(found))
+    if len(found.modes) > MAX_ROWS:
+        console.print(f"and {len(found.modes) - MAX_ROWS} more, up to {found.modes[-1].frequency:.5g} Hz.")
+    console.print(f"\nAbout the equilibrium that the scenario starts from{_tensions(found)}. Frequencies are")
+    console.print("those without damping; tip along x, y where the largest displacement is 1.")
+
+
+def _tensions(found: "RestModes") -> str:
+    return (
+        f" ({', '.join(f'{tension:g} N' for tension in found.rest.tension)})"
+        if found.rest.tension.size
+        else ""
+    )
+
+
+def _mode_table(found: "RestModes") -> Any:
+    title = f"{found.scenario.title}: modes at rest"
+    shown = plain_table(title, "mode", "frequency", "damping ratio", "falls to 1/e in", "tip along x", "y")
+    for number, mode in enumerate(found.modes[:MAX_ROWS], start=1):
+        x, y, _ = mode.shape[-1].round(2) + 0.0  # no -0.00
+        shown.add_row(str(number), *mode_row(mode), f"{x:.2f}", f"{y:.2f}")
+    return shown
