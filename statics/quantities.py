@@ -58,6 +58,11 @@ load_force_x         | F_x   | N      | sum of the dead forces on a disk, along 
 load_force_y         | F_y   | N      | sum of the dead forces on a disk, along y
 load_moment          | M     | N m    | sum of the moments on a disk
 retardation_time     | t_r   | s      | Kelvin-Voigt viscosity over Young's modulus, eta / E
+mass_damping_rate    | alpha_m | 1/s  | damping force over mass and speed, Rayleigh's alpha
+drag_per_speed       | c     | N s/m  | linear drag on a disk over its speed
+rotary_drag_per_speed | c_r  | N m s  | moment of linear drag over angular speed
+drag_per_speed_squared | c_2 | N s^2/m^2 | quadratic drag on a disk over its speed squared
+rotary_drag_per_speed_squared | c_r2 | N m s^2 | moment of quadratic drag over angular speed squared
 
 time                 | -     | s      | time
 segment              | -     | 1      | number of a segment, from the base

@@ -15,10 +15,18 @@ from statics.errors import did_you_mean
 from statics.quantities import QUANTITIES
 from statics.sigma import Sigma
 
+STILL = sp.Float(1e-60)
+"""Speed (m/s, rad/s) so small that, added as a square, it changes no bit of one beyond 1e-50."""
+
 
 def symbol(name: str) -> sp.Symbol:
     """The real symbol of that name."""
     return sp.Symbol(name, real=True)
+
+
+def size(*components: Any) -> Any:
+    """Size of a vector. ``STILL`` keeps its derivatives finite where the vector is zero."""
+    return sp.sqrt(sum(component**2 for component in components) + STILL**2)
 
 
 def _parameter(name: str) -> sp.Symbol:
@@ -134,3 +142,13 @@ class DiskSymbols:
 
     def __getattr__(self, name: str) -> sp.Symbol:
         return _parameter(name)
+
+    @property
+    def speed(self) -> Any:
+        """|v|."""
+        return size(*self.velocity)
+
+    @property
+    def angular_speed(self) -> Any:
+        """|omega|."""
+        return size(self.angular_velocity)
