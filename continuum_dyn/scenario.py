@@ -25,7 +25,7 @@ from continuum_dyn.study import (
     Solver,
     StepResponseStudy,
 )
-from statics.arm import PRESETS, Arm, Cable, DiskNumber
+from statics.arm import PRESETS, Arm, Cable, DiskNumber, Payload
 from statics.checked import STRICT, NonNegative, Positive
 from statics.effects import Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
@@ -118,6 +118,7 @@ class ScenarioFile(BaseModel):
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]
     cables: list[CableTable] = []
     loads: list[DiskLoad] = []
+    payloads: list[Payload] = []
     study: StudyTable
     solver: Solver = Solver()
     accuracy: Accuracy | None = None
@@ -129,6 +130,7 @@ _KEYS: dict[str, Any] = {
     "effects": EffectsTable,
     "cables": CableTable,
     "loads": DiskLoad,
+    "payloads": Payload,
     "solver": Solver,
     "accuracy": Accuracy,
     **{f"study.{name}": study for name, study in STUDIES.items()},
@@ -230,7 +232,8 @@ def _arm(file: ScenarioFile) -> Arm:
         Cable(cable.name or f"cable_{number}", cable.hole_offset, cable.anchor)
         for number, cable in enumerate(file.cables, start=1)
     )
-    return Arm(**numbers, subsegments=_subsegments(file.arm.subsegments), cables=cables)
+    subsegments, payloads = _subsegments(file.arm.subsegments), tuple(file.payloads)
+    return Arm(**numbers, subsegments=subsegments, cables=cables, payloads=payloads)
 
 
 def _subsegments(given: int | str | None) -> int:

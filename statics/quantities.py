@@ -38,6 +38,14 @@ core_density         | -     | kg/m^3 | density of the core; its mass then sits 
 subsegments          | -     | 1      | number of segments from disk to disk
 reference_curvature  | k_0   | 1/m    | curvature of the unloaded core
 
+mass                 | -     | kg     | mass of a payload
+inertia              | -     | kg m^2 | moment of inertia of a payload about its own centre
+offset               | -     | m      | from a disk's centre to its payload's: along the core, along the disk
+payload_mass         | m_p   | kg     | mass of a disk's payload
+payload_inertia      | I_p   | kg m^2 | moment of inertia of a disk's payload about its own centre
+payload_offset_x     | d_x   | m      | from a disk's centre to its payload's, along the core's tangent
+payload_offset_y     | d_y   | m      | from a disk's centre to its payload's, along the disk's y axis
+
 rest_length          | L_0   | m      | undeformed length L0 of a segment
 node_mass            | m     | kg     | mass at a segment's end: the disk's, if there is one, and the core's
 node_inertia         | I     | kg m^2 | moment of inertia at a segment's end

@@ -56,6 +56,11 @@ class Scene:
         return len(self.arm.cables) if self.has("cables") else 0
 
     @property
+    def payloads(self) -> int:
+        """Largest number of payloads on one disk."""
+        return self.arm.payloads_on_a_disk
+
+    @property
     def spans(self) -> bool:
         """Whether cables run past nodes that are not disks: then they join poses further apart."""
         return self.cables > 0 and self.arm.subsegments > 1

@@ -126,10 +126,24 @@ class SpanSymbols:
         )
 
 
-class DiskSymbols:
-    """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters."""
+class MassSymbols(NamedTuple):
+    """A mass on a disk: kg and kg m^2, and the motion of its centre, vectors in base axes."""
 
-    def __init__(self) -> None:
+    mass: Any
+    inertia: Any
+    position: tuple[Any, Any]
+    velocity: tuple[Any, Any]
+    acceleration: tuple[Any, Any]
+
+
+class DiskSymbols:
+    """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters.
+
+    ``payloads`` is the largest number of them on one disk.
+    """
+
+    def __init__(self, payloads: int = 0) -> None:
+        self.number_of_payloads = payloads
         self.position = (symbol("x"), symbol("y"))
         self.angle = symbol("theta")
         self.velocity = (symbol("velocity_x"), symbol("velocity_y"))
@@ -142,6 +156,28 @@ class DiskSymbols:
 
     def __getattr__(self, name: str) -> sp.Symbol:
         return _parameter(name)
+
+    @cached_property
+    def masses(self) -> list[MassSymbols]:
+        """The disk's own mass, and its payloads'."""
+        mass, inertia = symbol("node_mass"), symbol("node_inertia")
+        own = MassSymbols(mass, inertia, self.position, self.velocity, self.acceleration)
+        return [own, *(self._payload(number) for number in range(1, self.number_of_payloads + 1))]
+
+    def _payload(self, number: int) -> MassSymbols:
+        """A rigid body's centre d away: v + omega z x d, a + alpha z x d - omega^2 d."""
+        cosine, sine = sp.cos(self.angle), sp.sin(self.angle)
+        along, across = symbol(f"payload_offset_x_{number}"), symbol(f"payload_offset_y_{number}")
+        d_x, d_y = cosine * along - sine * across, sine * along + cosine * across
+        (x, y), (v_x, v_y), (a_x, a_y) = self.position, self.velocity, self.acceleration
+        omega, alpha = self.angular_velocity, self.angular_acceleration
+        return MassSymbols(
+            symbol(f"payload_mass_{number}"),
+            symbol(f"payload_inertia_{number}"),
+            (x + d_x, y + d_y),
+            (v_x - omega * d_y, v_y + omega * d_x),
+            (a_x - alpha * d_y - omega**2 * d_x, a_y + alpha * d_x - omega**2 * d_y),
+        )
 
     @property
     def speed(self) -> Any:

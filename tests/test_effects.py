@@ -101,7 +101,9 @@ def test_effect_left_out_leaves_no_trace_in_the_generated_source(name: str) -> N
 
 def symbols_of(effect: Effect) -> SegmentSymbols | DiskSymbols:
     """What the effect's pairs are written in; a span is one segment here."""
-    return DiskSymbols() if effect.place == "disk" else SegmentSymbols(("bend_angle", "elongation"), 1)
+    return (
+        DiskSymbols(payloads=1) if effect.place == "disk" else SegmentSymbols(("bend_angle", "elongation"), 1)
+    )
 
 
 def test_effects_that_are_there_leave_their_traces() -> None:

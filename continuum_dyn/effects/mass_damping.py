@@ -11,7 +11,7 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class MassDamping:
-    """F = -alpha m v along each node's position, M = -alpha I omega along its angle; alpha in 1/s.
+    """F = -alpha m v along the position of each mass, M = -alpha I omega along its angle; alpha in 1/s.
 
     With ``inertia`` and ``rotary_inertia`` every mode of angular frequency omega has the damping ratio
     alpha / (2 omega). The second term of Rayleigh's, proportional to stiffness, is ``material_damping``.
@@ -29,13 +29,10 @@ class MassDamping:
     source: ClassVar[str] = "Rayleigh 1877, The Theory of Sound, vol. 1, sec. 97"
 
     def pairs(self, at: Any) -> list[Pair]:
-        """Two pairs: damping force and position, damping moment and angle."""
-        v_x, v_y = at.velocity
-        per_speed = at.mass_damping_rate * at.node_mass
-        return [
-            Pair((-per_speed * v_x, -per_speed * v_y), at.position),
-            Pair(-at.mass_damping_rate * at.node_inertia * at.angular_velocity, at.angle),
-        ]
+        """Two pairs for each mass: damping force and position, damping moment and angle."""
+        rate, omega = at.mass_damping_rate, at.angular_velocity
+        forces = [Pair(tuple(-rate * m.mass * v for v in m.velocity), m.position) for m in at.masses]
+        return forces + [Pair(-rate * m.inertia * omega, at.angle) for m in at.masses]
 
     def columns(self, arm: Arm) -> dict[str, float]:
         """The rate alpha."""
