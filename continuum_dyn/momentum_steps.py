@@ -9,7 +9,8 @@ reach:
     dT/dq_a = P . (omega0 z x r_a + r_ab u_b) - phi_a P . (z x v)
 
 The second is p_a's with the partials' own rates: dv/dq_a = d(dv/du_a)/dt (Lagrange), and what lies beyond
-turns about the far disk. A disk's mass is taken to be the same in both directions.
+turns about the far disk. A payload beside its disk's centre makes the disk's T depend on its angle, and adds
+no term: turned together with its velocity a body keeps its T, so dT/dtheta + P . (z x v) = 0 for each disk.
 """
 
 from dataclasses import replace
@@ -39,7 +40,7 @@ CONSERVATIVE = Weights(1, 0, symbol("stiffness_weight"))
 
 
 def conservative(forces: SceneForces) -> SceneForces:
-    """The scene with d(T - V)/dq of each part for its force: without inertia's forces, and undamped."""
+    """The scene with -dV/dq of each part for its force: without inertia's forces, and undamped."""
     return replace(
         forces,
         on_segment=_conservative(forces.on_segment, forces.segment),
@@ -49,8 +50,7 @@ def conservative(forces: SceneForces) -> SceneForces:
 
 
 def _conservative(part: Forces, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
-    at_rest = part.force.subs(dict.fromkeys([*at.rates, *at.accelerations], 0))
-    force = at_rest + sp.Matrix([part.energies["kinetic_energy"].diff(q) for q in at.coordinates])
+    force = part.force.subs(dict.fromkeys([*at.rates, *at.accelerations], 0))
     none = sp.zeros(*part.damping.shape)
     return replace(part, force=force, damping=none, stiffness=-force.jacobian(at.coordinates))
 

@@ -25,7 +25,7 @@ from continuum_dyn.study import (
     Solver,
     StepResponseStudy,
 )
-from statics.arm import PRESETS, Arm, Cable, DiskNumber, Each, PerDisk
+from statics.arm import PRESETS, Arm, Cable, DiskNumber, Each, Payload, PerDisk
 from statics.checked import STRICT, NonNegative, Positive, Vector
 from statics.effects import Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
@@ -151,6 +151,7 @@ class ScenarioFile(BaseModel):
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]
     cables: list[CableTable] = []
     loads: list[LoadTable] = []
+    payloads: list[Payload] = []
     study: StudyTable
     solver: Solver = Solver()
     accuracy: Accuracy | None = None
@@ -162,6 +163,7 @@ _KEYS: dict[str, Any] = {
     "effects": EffectsTable,
     "cables": CableTable,
     "loads": LoadTable,
+    "payloads": Payload,
     "solver": Solver,
     "accuracy": Accuracy,
     **{f"study.{name}": study for name, study in STUDIES.items()},
@@ -272,8 +274,8 @@ def _arm(file: ScenarioFile) -> Arm:
     if isinstance(numbers["disk_spacing"], tuple):
         numbers["disk_spacing"] = sum(lists["disk_spacing"]) / len(lists["disk_spacing"])
     single = {name: value for name, value in numbers.items() if not isinstance(value, tuple)}
-    subsegments = _subsegments(file.arm.subsegments)
-    return Arm(**single, subsegments=subsegments, each=Each(**lists), cables=cables)
+    subsegments, payloads = _subsegments(file.arm.subsegments), tuple(file.payloads)
+    return Arm(**single, subsegments=subsegments, each=Each(**lists), cables=cables, payloads=payloads)
 
 
 def _subsegments(given: int | str | None) -> int:

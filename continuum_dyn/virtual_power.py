@@ -48,11 +48,10 @@ def derive_dynamics(scene: Scene) -> SceneForces:
 
 
 def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
-    pairs = [pair for _, group in groups for pair in group]
-    force = generalized_force(
-        pairs, lambda r, i: partial_velocity(r, at.coordinates, at.rates, i), at.coordinates
-    )
-    mass = -force.jacobian(at.accelerations)
+    force = _total(groups, at)
+    loads = _total([group for group in groups if group[0].account != "kinetic_energy"], at)
+    still = loads.subs(dict.fromkeys(at.rates, 0))
+    mass, damping = -force.jacobian(at.accelerations), -loads.jacobian(at.rates)
     energies = by_account(
         [group for group in groups if group[0].account in ("elastic_energy", "gravity_energy")],
         lambda pair: potential(pair, at.coordinates),
@@ -64,4 +63,11 @@ def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -
     )
     if "dissipated_power" in powers:
         powers["dissipated_power"] *= -1
-    return Forces(force, mass, -force.jacobian(at.rates), -force.jacobian(at.coordinates), energies, powers)
+    return Forces(force, mass, damping, -still.jacobian(at.coordinates), energies, powers)
+
+
+def _total(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> sp.Matrix:
+    pairs = [pair for _, group in groups for pair in group]
+    return generalized_force(
+        pairs, lambda r, i: partial_velocity(r, at.coordinates, at.rates, i), at.coordinates
+    )

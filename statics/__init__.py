@@ -1,6 +1,6 @@
 """Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
 
-from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable, Each
+from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable, Each, Payload
 from statics.effects import Bending, Cables, DiskLoad, DiskLoads, Extension, Gravity
 from statics.effects.cables import disk_loads
 from statics.equilibria import Equilibrium, StaticSolver, equilibrium, tension_ramp
@@ -23,6 +23,7 @@ __all__ = [
     "Gravity",
     "InputError",
     "Outcome",
+    "Payload",
     "Scene",
     "StaticSolver",
     "disk_loads",

@@ -24,7 +24,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from statics.checked import STRICT, Positive
+from statics.checked import STRICT, NonNegative, Positive, Vector
 from statics.errors import InputError, did_you_mean
 
 MAX_SEGMENTS = 10_000
@@ -74,6 +74,20 @@ class Each:
     reference_curvature: Annotated[tuple[float, ...], Field(strict=False)] | None = None
 
 
+@dataclass(frozen=True, config=STRICT)
+class Payload:
+    """A body fixed to a disk: its mass (kg), and moment of inertia (kg m^2) about its own centre.
+
+    ``offset`` (m) leads to its centre from the disk's: along the core's tangent there, and along the disk's
+    y axis.
+    """
+
+    disk: DiskNumber
+    mass: NonNegative
+    inertia: NonNegative = 0.0
+    offset: Vector = (0.0, 0.0)
+
+
 RONE2012: dict[str, Any] = {
     # Rone and Ben-Tzvi 2012, Table 1. In-plane rotation is about a disk's diameter: I_xx, not I_zz.
     "disks": 4,  # n
@@ -96,8 +110,8 @@ class Arm:
 
     ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` puts
     the core's own mass on the nodes, half of each segment's on either end; ``disk_mass`` is then a disk's
-    alone. Raises ``InputError`` for cables that do not fit, ``pydantic.ValidationError`` (a ``ValueError``)
-    for numbers of the wrong kind or sign.
+    alone. Raises ``InputError`` for cables and payloads that do not fit, ``pydantic.ValidationError`` (a
+    ``ValueError``) for numbers of the wrong kind or sign.
     """
 
     disks: DiskNumber
@@ -112,6 +126,7 @@ class Arm:
     subsegments: Subsegments = 1
     each: Each = field(default=Each())
     cables: Annotated[tuple[Cable, ...], Field(strict=False)] = field(default=())
+    payloads: Annotated[tuple[Payload, ...], Field(strict=False)] = field(default=())
 
     def __post_init__(self) -> None:
         if self.segments > MAX_SEGMENTS:
@@ -126,6 +141,11 @@ class Arm:
                 raise InputError(f"{name}: {len(values)} numbers for {self.disks} disks. Give one for each.")
         for cable in self.cables:
             self._check(cable)
+        for payload in self.payloads:
+            if payload.disk > self.disks:
+                raise InputError(
+                    f"payload on disk {payload.disk}: beyond the arm. Allowed: disks 1 to {self.disks}."
+                )
         for name, count in Counter(cable.name for cable in self.cables).items():
             if count > 1:
                 raise InputError(f"{count} cables are named '{name}'. Give each its own name.")
@@ -239,7 +259,27 @@ class Arm:
             columns["node_mass"] = self.at_disks(self.per_disk("disk_mass")) + self._core_on_nodes()
         if self.knows("disk_inertia"):
             columns["node_inertia"] = self.at_disks(self.per_disk("disk_inertia"))
-        return columns
+        return columns | self._payload_columns()
+
+    @property
+    def payloads_on_a_disk(self) -> int:
+        """Largest number of payloads on one disk."""
+        return max(Counter(payload.disk for payload in self.payloads).values(), default=0)
+
+    def _payload_columns(self) -> dict[str, np.ndarray]:
+        """The first, second, ... payload of every node, shape (segments,); zero where there is none."""
+        names = ("payload_mass", "payload_inertia", "payload_offset_x", "payload_offset_y")
+        values = np.zeros((self.payloads_on_a_disk, len(names), self.disks))
+        placed = Counter[int]()
+        for payload in self.payloads:
+            numbers = (payload.mass, payload.inertia, *payload.offset)
+            values[placed[payload.disk], :, payload.disk - 1] = numbers
+            placed[payload.disk] += 1
+        return {
+            f"{name}_{number}": self.at_disks(value)
+            for number, of_payload in enumerate(values, start=1)
+            for name, value in zip(names, of_payload, strict=True)
+        }
 
     @property
     def massless_nodes(self) -> bool:

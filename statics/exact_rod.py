@@ -126,6 +126,8 @@ def _check(scene: Scene) -> None:
         raise InputError("the exact rod does not know loads that change in time.")
     if scene.arm.core_density is not None:
         raise InputError("the exact rod has no mass of its own: it does not know core_density.")
+    if scene.arm.payloads:
+        raise InputError("the exact rod does not know payloads.")
     if not scene.has(Bending.name):
         raise InputError("the exact rod needs the effect 'bending', which the scene does not have.")
 

@@ -38,6 +38,14 @@ core_density         | -     | kg/m^3 | density of the core; its mass then sits 
 subsegments          | -     | 1      | number of segments from disk to disk
 reference_curvature  | k_0   | 1/m    | curvature of the unloaded core
 
+mass                 | -     | kg     | mass of a payload
+inertia              | -     | kg m^2 | moment of inertia of a payload about its own centre
+offset               | -     | m      | from a disk's centre to its payload's: along the core, along the disk
+payload_mass         | m_p   | kg     | mass of a disk's payload
+payload_inertia      | I_p   | kg m^2 | moment of inertia of a disk's payload about its own centre
+payload_offset_x     | d_x   | m      | from a disk's centre to its payload's, along the core's tangent
+payload_offset_y     | d_y   | m      | from a disk's centre to its payload's, along the disk's y axis
+
 rest_length          | L_0   | m      | undeformed length L0 of a segment
 node_mass            | m     | kg     | mass at a segment's end: the disk's, if there is one, and the core's
 node_inertia         | I     | kg m^2 | moment of inertia at a segment's end
@@ -66,6 +74,11 @@ driven_force_y       | F_y   | N      | force that a load factor multiplies, alo
 driven_moment        | M     | N m    | moment that a load factor multiplies
 load                 | -     | 1      | number of a load that changes in time
 retardation_time     | t_r   | s      | Kelvin-Voigt viscosity over Young's modulus, eta / E
+mass_damping_rate    | alpha_m | 1/s  | damping force over mass and speed, Rayleigh's alpha
+drag_per_speed       | c     | N s/m  | linear drag on a disk over its speed
+rotary_drag_per_speed | c_r  | N m s  | moment of linear drag over angular speed
+drag_per_speed_squared | c_2 | N s^2/m^2 | quadratic drag on a disk over its speed squared
+rotary_drag_per_speed_squared | c_r2 | N m s^2 | moment of quadratic drag over angular speed squared
 
 time                 | -     | s      | time
 segment              | -     | 1      | number of a segment, from the base

@@ -115,14 +115,18 @@ def turn_frame(trace: Trace, forces: SceneForces) -> dict[str, tuple[float, Any]
 
 
 def far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
-    """Pose of the far disk: what is carried on, and what the disk's symbols stand for."""
+    """Pose of the far disk: what is carried on, and what the disk's symbols stand for.
+
+    The trace must have ``turn_frame`` in it where the disk's forces ask for cosine and sine of its angle.
+    """
     x, y, theta = (symbol(f"near_{name}") for name in ("x", "y", "theta"))
     far_x = trace.let("far_x", x + reach.whole[0])
     far_y = trace.let("far_y", y + reach.whole[1])
     far_theta = trace.let("far_theta", theta + forces.segment.bend_angle)
     carried = {"near_x": (0.0, far_x), "near_y": (0.0, far_y), "near_theta": (0.0, far_theta)}
-    at_disk = dict(zip(forces.disk.coordinates, (far_x, far_y, far_theta), strict=True))
-    return carried, at_disk
+    at_disk: dict[Any, Any] = dict(zip(forces.disk.coordinates, (far_x, far_y, far_theta), strict=True))
+    turns = {sp.cos(forces.disk.angle): "next_cosine", sp.sin(forces.disk.angle): "next_sine"}
+    return carried, at_disk | {turn: symbol(name) for turn, name in turns.items()}
 
 
 def from_start(near: Any, before: Any) -> Any:
@@ -144,10 +148,9 @@ def span_ends(
         at_start = trace.let(f"from_{name}", from_start(near, symbol(f"span_{name}")))
         carried[f"span_{name}"] = (start, at_start)
         at[symbol(f"span_{name}")] = at_start
-    theta, span_theta = symbol("theta"), symbol("span_theta")
-    turns = {sp.cos(theta): frame["cosine"][1], sp.sin(theta): frame["sine"][1]}
-    turns |= {sp.cos(span_theta): carried["span_cosine"][1], sp.sin(span_theta): carried["span_sine"][1]}
-    return carried, turns | at | _cable_lengths(trace, forces.span.cables, turns | at)
+    theta = symbol("span_theta")
+    at |= {sp.cos(theta): carried["span_cosine"][1], sp.sin(theta): carried["span_sine"][1]}
+    return carried, at | _cable_lengths(trace, forces.span.cables, at)
 
 
 def _cable_lengths(trace: Trace, cables: list[CableSymbols], at: dict[Any, Any]) -> dict[Any, Any]:

@@ -70,6 +70,11 @@ class Scene:
         return self.cables + self.driven_loads
 
     @property
+    def payloads(self) -> int:
+        """Largest number of payloads on one disk."""
+        return self.arm.payloads_on_a_disk
+
+    @property
     def spans(self) -> bool:
         """Whether cables run past nodes that are not disks: then they join poses further apart."""
         return self.cables > 0 and self.arm.subsegments > 1

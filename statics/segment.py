@@ -15,10 +15,18 @@ from statics.errors import did_you_mean
 from statics.quantities import QUANTITIES
 from statics.sigma import Sigma
 
+STILL = sp.Float(1e-60)
+"""Speed (m/s, rad/s) so small that, added as a square, it changes no bit of one beyond 1e-50."""
+
 
 def symbol(name: str) -> sp.Symbol:
     """The real symbol of that name."""
     return sp.Symbol(name, real=True)
+
+
+def size(*components: Any) -> Any:
+    """Size of a vector. ``STILL`` keeps its derivatives finite where the vector is zero."""
+    return sp.sqrt(sum(component**2 for component in components) + STILL**2)
 
 
 def _parameter(name: str) -> sp.Symbol:
@@ -136,10 +144,24 @@ class SpanSymbols:
         )
 
 
-class DiskSymbols:
-    """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters."""
+class MassSymbols(NamedTuple):
+    """A mass on a disk: kg and kg m^2, and the motion of its centre, vectors in base axes."""
 
-    def __init__(self, driven_loads: int = 0) -> None:
+    mass: Any
+    inertia: Any
+    position: tuple[Any, Any]
+    velocity: tuple[Any, Any]
+    acceleration: tuple[Any, Any]
+
+
+class DiskSymbols:
+    """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters.
+
+    ``payloads`` is the largest number of them on one disk, ``driven_loads`` that of loads that change.
+    """
+
+    def __init__(self, payloads: int = 0, driven_loads: int = 0) -> None:
+        self.number_of_payloads = payloads
         self.driven_loads = [
             DrivenLoad(
                 symbol(f"load_factor_{number}"),
@@ -160,3 +182,35 @@ class DiskSymbols:
 
     def __getattr__(self, name: str) -> sp.Symbol:
         return _parameter(name)
+
+    @cached_property
+    def masses(self) -> list[MassSymbols]:
+        """The disk's own mass, and its payloads'."""
+        mass, inertia = symbol("node_mass"), symbol("node_inertia")
+        own = MassSymbols(mass, inertia, self.position, self.velocity, self.acceleration)
+        return [own, *(self._payload(number) for number in range(1, self.number_of_payloads + 1))]
+
+    def _payload(self, number: int) -> MassSymbols:
+        """A rigid body's centre d away: v + omega z x d, a + alpha z x d - omega^2 d."""
+        cosine, sine = sp.cos(self.angle), sp.sin(self.angle)
+        along, across = symbol(f"payload_offset_x_{number}"), symbol(f"payload_offset_y_{number}")
+        d_x, d_y = cosine * along - sine * across, sine * along + cosine * across
+        (x, y), (v_x, v_y), (a_x, a_y) = self.position, self.velocity, self.acceleration
+        omega, alpha = self.angular_velocity, self.angular_acceleration
+        return MassSymbols(
+            symbol(f"payload_mass_{number}"),
+            symbol(f"payload_inertia_{number}"),
+            (x + d_x, y + d_y),
+            (v_x - omega * d_y, v_y + omega * d_x),
+            (a_x - alpha * d_y - omega**2 * d_x, a_y + alpha * d_x - omega**2 * d_y),
+        )
+
+    @property
+    def speed(self) -> Any:
+        """|v|."""
+        return size(*self.velocity)
+
+    @property
+    def angular_speed(self) -> Any:
+        """|omega|."""
+        return size(self.angular_velocity)

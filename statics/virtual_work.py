@@ -26,7 +26,8 @@ class Forces:
     """Generalized forces at one segment or disk, and the energies and powers behind them.
 
     ``force`` has shape (coordinates, 1); ``mass``, ``damping`` and ``stiffness`` are its negative
-    derivatives by accelerations, rates and coordinates. ``energies`` and ``powers`` go by account.
+    derivatives by accelerations, rates and coordinates, as Newton's method takes them: damping without the
+    inertia forces, stiffness at rest, so that all are symmetric. ``energies`` and ``powers`` go by account.
     """
 
     force: sp.Matrix
@@ -115,10 +116,8 @@ def derive_statics(scene: Scene) -> SceneForces:
 
 def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
     """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
-    segment, disk = (
-        SegmentSymbols(scene.coordinates, scene.cables, scene.tapered),
-        DiskSymbols(scene.driven_loads),
-    )
+    segment = SegmentSymbols(scene.coordinates, scene.cables, scene.tapered)
+    disk = DiskSymbols(scene.payloads, scene.driven_loads)
     on_segment = collect(scene.effects, "segment", segment)
     on_disk = forces_at(collect(scene.effects, "disk", disk), disk)
     if not scene.spans:

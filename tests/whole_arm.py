@@ -39,7 +39,8 @@ class WholeArm:
     ``n`` segments, with ``L0``, ``EJ``, ``EA`` and ``k0`` of each, shape (n,); every ``step``-th of their
     ends is a disk. ``m`` and ``I_xx`` hold what stands on each end, shape (n,), so do the dead loads
     ``force`` (n, 2) and ``moment`` (n,). ``r_h`` has shape (cables, disks + 1), the base's first; ``last``
-    (the anchor's disk) has one number for each cable; ``relaxation`` is eta / E.
+    (the anchor's disk) has one number for each cable; ``relaxation`` is eta / E. ``payload`` holds mass,
+    inertia and offset of each, shape (payloads, 4), and ``carriers`` the ends that they are fixed to.
     """
 
     n: int
@@ -57,6 +58,8 @@ class WholeArm:
     last: np.ndarray
     force: np.ndarray
     moment: np.ndarray
+    payload: np.ndarray
+    carriers: tuple[int, ...]
 
     @property
     def numbers(self) -> list[float]:
@@ -108,6 +111,8 @@ def whole_arm(scene: Scene) -> WholeArm:
         last=np.array([cable.anchor or arm.disks for cable in cables]),
         force=force,
         moment=moment,
+        payload=np.array([(p.mass, p.inertia, *p.offset) for p in arm.payloads]).reshape(-1, 4),
+        carriers=tuple(step * payload.disk for payload in arm.payloads),
     )
 
 
@@ -186,7 +191,7 @@ def relative_error(actual: np.ndarray, expected: np.ndarray) -> float:
 class _Symbols:
     """What the equations of motion are written in."""
 
-    def __init__(self, n: int, extends: bool, cables: int, step: int) -> None:
+    def __init__(self, n: int, extends: bool, cables: int, step: int, payloads: int) -> None:
         self.step = step
         self.phi, self.phi_rate = dynamicsymbols(f"phi1:{n + 1}"), dynamicsymbols(f"omega1:{n + 1}")
         self.e = dynamicsymbols(f"e1:{n + 1}") if extends else ()
@@ -197,12 +202,13 @@ class _Symbols:
         self.r_h = sp.Matrix(cables, n // step + 1, lambda c, i: sp.Symbol(f"r{c}_{i}"))
         self.tension = sp.Matrix(cables, n // step, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
         self.load = sp.Matrix(n, 3, lambda i, a: sp.Symbol(f"load{i}_{a}"))
+        self.payload = sp.Matrix(payloads, 4, lambda i, a: sp.Symbol(f"payload{i}_{a}"))
         self.q, self.u = [*self.phi, *self.e], [*self.phi_rate, *self.e_rate]
 
     @property
     def arguments(self) -> list[Any]:
         numbers = [self.numbers, *self.core, self.m, self.I_xx, self.r_h.flat()]
-        return [self.q, self.u, *numbers, self.tension.flat(), self.load.flat()]
+        return [self.q, self.u, *numbers, self.tension.flat(), self.load.flat(), self.payload.flat()]
 
     def rate(self, expression: Any) -> Any:
         return sum(sp.diff(expression, q) * u for q, u in zip(self.q, self.u, strict=True))
@@ -271,30 +277,49 @@ def _cable_forces(s: _Symbols, c: int, frames: list[ReferenceFrame], centers: li
     return loads
 
 
+def _payload_bodies(
+    s: _Symbols, carriers: tuple[int, ...], frames: list[ReferenceFrame], centers: list[Point]
+) -> tuple[list[RigidBody], list[Any]]:
+    """A body of its own for each payload, fixed to its disk, and its weight."""
+    *_, g_x, g_y, _relaxation = s.numbers
+    base, bodies, loads = frames[0], [], []
+    for number, carrier in enumerate(carriers):
+        m, I, along, across = s.payload.row(number)  # noqa: E741
+        frame, center = frames[carrier], centers[carrier]
+        own = center.locatenew(f"payload{number}", along * frame.x + across * frame.y)
+        own.v2pt_theory(center, base, frame)
+        bodies.append(RigidBody(f"payload{number}", own, frame, m, (inertia(frame, 0, 0, I), own)))
+        loads.append((own, m * g_x * base.x + m * g_y * base.y))
+    return bodies, loads
+
+
 @cache
-def kane_equations(n: int, extends: bool, cables: int, step: int) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
+def kane_equations(
+    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...] = ()
+) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
     """Mass matrix M and forcing f of M u' = f, rates of all bends before those of all elongations."""
-    s = _Symbols(n, extends, cables, step)
+    s = _Symbols(n, extends, cables, step, len(carriers))
     frames, centers = _place_disks(s)
     disks = [
         RigidBody(f"disk{i}", centers[i], frames[i], m, (inertia(frames[i], 0, 0, I_xx), centers[i]))
         for i, (m, I_xx) in enumerate(zip(s.m, s.I_xx, strict=True), start=1)
     ]
-    loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames)]
+    payloads, weights = _payload_bodies(s, carriers, frames, centers)
+    loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames), *weights]
     for c in range(cables):
         loads += _cable_forces(s, c, frames, centers)
     kane = KanesMethod(
         frames[0], s.q, s.u, kd_eqs=[sp.diff(q, "t") - u for q, u in zip(s.q, s.u, strict=True)]
     )
-    kane.kanes_equations(disks, loads)
+    kane.kanes_equations([*disks, *payloads], loads)
     return s, kane.mass_matrix, kane.forcing + _axial_forces(s)
 
 
 @cache
 def _kane_function(
-    n: int, extends: bool, cables: int, step: int, module: str
+    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...], module: str
 ) -> Callable[..., tuple[Any, Any]]:
-    s, mass, forcing = kane_equations(n, extends, cables, step)
+    s, mass, forcing = kane_equations(n, extends, cables, step, carriers)
     return sp.lambdify(s.arguments, (mass, forcing), modules=module, cse=True)
 
 
@@ -302,14 +327,14 @@ def _arguments(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray)
     load = np.column_stack([arm.force, arm.moment])
     tensions, numbers = arm.tension_along(tension), [np.array(arm.numbers), *arm.core, arm.m, arm.I_xx]
     numbers.append(arm.r_h.ravel())
-    return [q.T.ravel(), u.T.ravel(), *numbers, tensions.ravel(), load.ravel()]
+    return [q.T.ravel(), u.T.ravel(), *numbers, tensions.ravel(), load.ravel(), arm.payload.ravel()]
 
 
 def mass_and_forcing(
     arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """M, shape (q.size, q.size), and f, shape (q.size,), at one state."""
-    equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, "numpy")
+    equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, arm.carriers, "numpy")
     mass, forcing = equations(*_arguments(arm, q, u, tension))
     return mass, forcing[:, 0]
 
@@ -325,7 +350,7 @@ def precise_accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: 
     bent[q[:, 0] == 0, 0] = "1e-40"
     with mpmath.workdps(200):
         numbers = [[mpmath.mpf(value) for value in values] for values in _arguments(arm, bent, u, tension)]
-        equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, "mpmath")
+        equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, arm.carriers, "mpmath")
         solution = mpmath.lu_solve(*equations(*numbers))
         return np.array(solution, dtype=float).reshape(-1, arm.n).T
 
@@ -364,9 +389,14 @@ def elastic_energy(arm: WholeArm, q: np.ndarray) -> Any:
 
 
 def gravity_energy(arm: WholeArm, q: np.ndarray) -> Any:
-    """Of the masses, zero at the base, J."""
-    x, y, _ = poses(arm, q)
-    return -(arm.g[0] * arm.m @ x + arm.g[1] * arm.m @ y)
+    """Of the masses, payloads included, zero at the base, J."""
+    x, y, theta = poses(arm, q)
+    m, _, along, across = arm.payload.T
+    at = np.array(arm.carriers, dtype=int) - 1
+    cosine, sine = np.cos(theta[at]), np.sin(theta[at])
+    weight_x = arm.m @ x + m @ (x[at] + along * cosine - across * sine)
+    weight_y = arm.m @ y + m @ (y[at] + along * sine + across * cosine)
+    return -(arm.g[0] * weight_x + arm.g[1] * weight_y)
 
 
 def load_energy(arm: WholeArm, q: np.ndarray) -> Any:

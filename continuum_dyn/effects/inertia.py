@@ -11,7 +11,7 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class Inertia:
-    """F = -m a along each node's position (d'Alembert)."""
+    """F = -m a along the position of each mass, of nodes and payloads (d'Alembert)."""
 
     name: ClassVar[str] = "inertia"
     place: ClassVar[Place] = "disk"
@@ -23,9 +23,8 @@ class Inertia:
     source: ClassVar[str] = "Kane and Levinson 1985, generalized inertia forces"
 
     def pairs(self, at: Any) -> list[Pair]:
-        """One pair: inertia force, position of the node."""
-        a_x, a_y = at.acceleration
-        return [Pair((-at.node_mass * a_x, -at.node_mass * a_y), at.position)]
+        """A pair for each mass: inertia force, position."""
+        return [Pair(tuple(-m.mass * a for a in m.acceleration), m.position) for m in at.masses]
 
     def columns(self, arm: Arm) -> dict[str, float]:
         """None of its own."""

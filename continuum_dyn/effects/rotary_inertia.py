@@ -1,4 +1,4 @@
-"""Inertia of the disks against angular acceleration in the plane."""
+"""Inertia of disks and payloads against angular acceleration in the plane."""
 
 from typing import Any, ClassVar
 
@@ -11,7 +11,10 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class RotaryInertia:
-    """M = -I alpha along each disk's angle; I is about an in-plane diameter, Table 1's I_xx."""
+    """M = -I alpha along each disk's angle; I is about an in-plane diameter, Table 1's I_xx.
+
+    A payload's I is about its own centre: what its offset adds is ``inertia``'s.
+    """
 
     name: ClassVar[str] = "rotary_inertia"
     place: ClassVar[Place] = "disk"
@@ -23,8 +26,8 @@ class RotaryInertia:
     source: ClassVar[str] = "Kane and Levinson 1985, generalized inertia forces"
 
     def pairs(self, at: Any) -> list[Pair]:
-        """One pair: inertia moment, angle of the disk."""
-        return [Pair(-at.node_inertia * at.angular_acceleration, at.angle)]
+        """A pair for the disk and for each payload: inertia moment, angle of the disk."""
+        return [Pair(-m.inertia * at.angular_acceleration, at.angle) for m in at.masses]
 
     def columns(self, arm: Arm) -> dict[str, float]:
         """None of its own."""

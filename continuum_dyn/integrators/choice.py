@@ -52,9 +52,11 @@ def choose(dynamics: Dynamics, start: np.ndarray, span: Span, duration: float, e
 
 def check(scene: Scene, method: Method) -> None:
     """Raises ``InputError`` where the method cannot integrate the scene."""
-    if scene.arm.massless_nodes and (method != "chain" or not dissipated_by(scene)):
+    damping = dissipated_by(scene)
+    of_core = [effect for effect in scene.effects if effect.place == "segment" and effect.name in damping]
+    if scene.arm.massless_nodes and (method != "chain" or not of_core):
         raise InputError(
-            "the nodes between disks carry no mass: only damping can move them, and only method "
-            f'"chain"; this is a {"damped" if dissipated_by(scene) else "free"} motion by "{method}". '
+            "the nodes between disks carry no mass: only damping of the core can move them, and only method "
+            f'"chain"; this is a {"damped" if of_core else "free"} motion by "{method}". '
             "Give the arm's core_density, or effect material_damping and that method."
         )

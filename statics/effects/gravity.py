@@ -11,7 +11,7 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class Gravity:
-    """F = m g along each node's position; ``acceleration`` is g, m/s^2."""
+    """F = m g along the position of each mass, of nodes and payloads; ``acceleration`` is g, m/s^2."""
 
     acceleration: Vector = (0.0, -9.81)
 
@@ -25,8 +25,8 @@ class Gravity:
     source: ClassVar[str] = "Rone 2012, Eq. 19"
 
     def pairs(self, at: Any) -> list[Pair]:
-        """One pair: weight, position of the node."""
-        return [Pair((at.node_mass * at.gravity_x, at.node_mass * at.gravity_y), at.position)]
+        """A pair for each mass: weight, position."""
+        return [Pair((m.mass * at.gravity_x, m.mass * at.gravity_y), m.position) for m in at.masses]
 
     def columns(self, arm: Arm) -> dict[str, float]:
         """Components of g."""
