@@ -13,10 +13,10 @@ run: $(VENV)/run ## Simulate the step response and say where its log is.
 	$(BIN)/continuum-dyn run scenarios/step_response.toml
 
 test: $(VENV)/dev ## The default part of the tests.
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 test-all: $(VENV)/dev ## All tests, the slow ones included.
-	$(BIN)/python -m pytest -m "slow or not slow"
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile -m "slow or not slow"
 
 check: lint types contracts ## Lint, types and import contracts.
 

@@ -157,6 +157,8 @@ class Motion:
 
     def fastest_rate(self) -> float:
         """Largest rate (1/s) of the motion linearized at its start: what explicit steps must resolve."""
+        if self.dynamics.scene.arm.massless_nodes:
+            return np.inf
         return rates(self.dynamics, self.start, self.stretches[0])[1]
 
 
@@ -165,6 +167,10 @@ def measure(scenario: Scenario, progress: Callable[[str], None] = lambda _: None
 
     Raises ``InputError`` for a study without motion, or where the references do not reach its end.
     """
+    if scenario.scene.arm.massless_nodes:
+        raise InputError(
+            'cost compares methods, and nodes without mass leave only "chain". Give the arm\'s core_density.'
+        )
     motion = Motion(scenario)
     progress("references")
     references = [motion.run(solver) for solver in REFERENCES]
@@ -270,10 +276,10 @@ def effects(
         progress(f"without {effect.name}")
         try:
             without = Motion(scenario.without(effect.name))
+            without.warm_up("chain")
         except InputError:
             found.append(Effect(effect.name))
             continue
-        without.warm_up("chain")
         trajectory = without.run(solver, Budget(seconds=10.0 * PATIENCE))
         if trajectory is None:
             found.append(Effect(effect.name))

@@ -47,9 +47,8 @@ class Dynamics:
         self.dofs = len(scene.coordinates)
         self.size = scene.arm.segments * self.dofs
         self.state_size = 2 * self.size + 2
-        self.kernel = load(scene, RECIPE)
-        self.segments = scene.table("segment", self.kernel.SEGMENT_COLUMNS)
-        self.disks = scene.table("disk", self.kernel.DISK_COLUMNS)
+        self.load = load
+        self.kernel, self.segments, self.disks = self._loaded(RECIPE)
 
     def state(self, coordinates: np.ndarray, rates: np.ndarray | None = None) -> np.ndarray:
         """State from coordinates and rates, shape (segments, dofs), at rest by default; ledger at zero."""
@@ -109,7 +108,7 @@ class Dynamics:
         return self._loaded(midpoint_kernel.RECIPE)
 
     def _loaded(self, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
-        kernel = codegen.load(self.scene, recipe)
+        kernel = self.load(self.scene, recipe)
         tables = ("segment", kernel.SEGMENT_COLUMNS), ("disk", kernel.DISK_COLUMNS)
         segments, disks = (self.scene.table(place, columns) for place, columns in tables)
         return kernel, segments, disks
@@ -127,12 +126,12 @@ class Dynamics:
         """
         q, _ = self.split(y[None, : 2 * self.size])
         pose, velocity = np.empty((2, 1, self.scene.arm.segments, 3))
-        ledger, tension = np.empty((1, len(LEDGER))), np.zeros((1, self.scene.cables))
+        ledger, tension = np.empty((1, len(LEDGER))), np.zeros((1, self.scene.inputs))
         self.kernel.observe(q, change[None], tension, self.segments, self.disks, pose, velocity, ledger)
         return velocity[0, self.scene.arm.disk_nodes]
 
     def observe(self, states: np.ndarray, tension: np.ndarray) -> Observation:
-        """Poses, tip speed, energies and powers at states (samples, size) under tension (samples, cables)."""
+        """Poses, tip speed, energies and powers at states (samples, size) under inputs (samples, inputs)."""
         q, u = self.split(states)
         pose, velocity = np.empty((*q.shape[:2], 3)), np.empty((*q.shape[:2], 3))
         ledger = np.empty((len(states), len(LEDGER)))

@@ -46,8 +46,9 @@ def to_mesh(tips: Callable[[int], np.ndarray | None], allowed: float, most: int)
     found: Mesh | None = None
     subsegments = 1
     for _ in range(MOST_TRIALS):
-        coarse, middle, fine = (tips(factor * subsegments) for factor in (1, 2, 4))
-        if coarse is None or middle is None or fine is None:
+        if (coarse := tips(subsegments)) is None:
+            return found
+        if (middle := tips(2 * subsegments)) is None or (fine := tips(4 * subsegments)) is None:
             return found
         limit = between(middle, fine)
         plain = _largest(coarse - limit)
@@ -68,7 +69,9 @@ def between(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
 
 
 def extrapolated(coarse: Poses, fine: Poses) -> Poses:
-    """The finer one with the disks' poses of the continuous arm."""
+    """The finer one with the disks' poses of the continuous arm; as it is where the coarser one has none."""
+    if isinstance(coarse, Equilibrium) and not coarse.found:
+        return fine
     names = ("disk_x", "disk_y", "disk_theta")
     return replace(fine, **{name: between(getattr(coarse, name), getattr(fine, name)) for name in names})
 

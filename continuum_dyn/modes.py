@@ -116,7 +116,7 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
     rest = StaticSolver(scenario.scene).solve(scenario.initial_tension)
     if not rest.stable:
         raise InputError(f"modes are those about a stable equilibrium; found: {rest.outcome}.")
-    found = modes(dynamics, dynamics.state(rest.coordinates), _still(rest.tension))
+    found = modes(dynamics, dynamics.state(rest.coordinates), _still(scenario.initial_tension))
     return RestModes(scenario, rest, found)
 
 
@@ -133,14 +133,14 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
             if not rest.stable:
                 return None
             dynamics = Dynamics(without.scene, codegen.load_interpreted)
-            return rates(dynamics, dynamics.state(rest.coordinates), _still(rest.tension))
+            return rates(dynamics, dynamics.state(rest.coordinates), _still(without.initial_tension))
     except (InputError, ArithmeticError, ValueError):  # Python raises where compiled code goes on with nan
         return None
 
 
-def _still(tension: np.ndarray) -> Span:
-    """Tensions that stay as they are."""
-    return spans(tuple(Constant(float(value)) for value in tension), 1.0)[0]
+def _still(inputs: np.ndarray) -> Span:
+    """Tensions and factors of loads that stay as they are."""
+    return spans(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
 
 
 def modes(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[Mode, ...]:

@@ -39,6 +39,7 @@ _DIMENSIONS = {
 
 _PER_POINT = (
     "tension",
+    "load_factor",
     "bend_angle",
     "elongation",
     "curvature",
@@ -179,7 +180,9 @@ def _root_attributes(run: Run) -> dict[str, Any]:
 
 def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
     arm = scenario.scene.arm
-    numbers = {name: value for name, value in vars(arm).items() if isinstance(value, int | float)}
+    each = {name: values for name, values in vars(arm.each).items() if values is not None}
+    given = {name: value for name, value in vars(arm).items() if name not in each}
+    numbers = {name: value for name, value in given.items() if isinstance(value, int | float)}
     group.attrs.update(numbers)
     cables = arm.cables[: scenario.scene.cables]
     _write_scale(group, "cable", _names(scenario))
@@ -189,9 +192,8 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
     _write_dataset(group, "hole_offset", offsets, ["cable", "hole"])
     anchors = np.array([cable.anchor or arm.disks for cable in cables], dtype=int)
     _write_dataset(group, "anchor", anchors, ["cable"])
-    for name, values in vars(arm.each).items():
-        if values is not None:
-            _write_dataset(group, f"{name}", np.array(values), ["disk"])
+    for name, values in each.items():
+        _write_dataset(group, name, np.array(values), ["disk"])
 
 
 def _points(run: Run) -> tuple[np.ndarray, list[Equilibrium], np.ndarray | None]:

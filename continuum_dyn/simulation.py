@@ -57,6 +57,8 @@ class Run:
             return None
         if self.trajectory is not None:
             return np.column_stack([self.trajectory.disk_x[:, -1], self.trajectory.disk_y[:, -1]])
+        if not all(point.found for point in self.equilibria):
+            return None
         return np.array([point.tip[:2] for point in self.equilibria])
 
     @property
@@ -106,9 +108,13 @@ def _with_chosen_mesh(scenario: Scenario, progress: Callable[[float], None] | No
     run = runs[mesh.subsegments]
     if mesh.extrapolated:
         run = _extrapolated(run, runs[2 * mesh.subsegments])
-    message = run.message if mesh.reached else _coarse(mesh, asked, solve_time)
+    if not mesh.reached:
+        stopped = next((run for run in runs.values() if run.tips is None), run)
+        told = f"{stopped.message}; " if stopped is not run else ""
+        run = replace(run, outcome=stopped.outcome, message=told + _coarse(mesh, asked, solve_time))
     error = mesh.estimate + (run.tip_error or 0.0)
-    return replace(run, message=message, tip_error=error, mesh=mesh, solve_time=solve_time)
+    asked_for = replace(run.scenario, accuracy=scenario.accuracy, chooses_mesh=True)
+    return replace(run, scenario=asked_for, tip_error=error, mesh=mesh, solve_time=solve_time)
 
 
 def _extrapolated(coarse: Run, fine: Run) -> Run:
@@ -228,20 +234,21 @@ def _moved(
     """The motion with the solver's tolerances, or with those that the scenario's accuracy takes."""
     samples = np.linspace(0.0, study.duration, study.samples)
     y = dynamics.state(start.coordinates)
-    last: list[Trajectory] = []
+    last: list[_Moved] = []
 
     def run(settings: Solver) -> Trajectory | None:
-        last.append(integrate(dynamics, stretches, samples, y, settings, monitor))
-        return None if monitor.outcome else last[-1]
+        trajectory = integrate(dynamics, stretches, samples, y, settings, monitor)
+        last.append(_Moved(trajectory, settings, None))
+        return None if monitor.outcome else trajectory
 
     if scenario.accuracy is None:
         run(solver)
-        return _Moved(last[-1], solver, None)
+        return last[-1]
     asked = scenario.accuracy.tip
     started = time.perf_counter()
     found = to_accuracy(run, solver, asked, scenario.scene.arm.total_length)
     if found is None:
-        return _Moved(last[-1], solver, None)
+        return last[-1]
     if not found.reached:
         stopped = f"{monitor.message}; " if monitor.message else ""
         monitor.message = (

@@ -165,6 +165,8 @@ class Scenario:
         if isinstance(self.study, MotionStudy):
             self._check_motion(self.study)
         elif isinstance(self.study, RampStudy):
+            if not all(isinstance(factor, Constant) for factor in self.load_factors):
+                raise InputError('a "ramp" study takes one number for each load factor.')
             if len({len(values) for values in self.ramps}) > 1:
                 counts = ", ".join(str(len(values)) for values in self.ramps)
                 raise InputError(

@@ -13,11 +13,10 @@ class Trajectory:
     """A motion at its samples; SI units.
 
     ``time`` and energies have shape (samples,), ``tension`` (samples, cables), ``load_factor`` (samples,
-    driven loads) or None, coordinates, curvature and
-    length (samples, segments), poses (samples, disks). ``elongation`` and its rate are None in a scene
-    without extension. ``ledger`` holds energies (J), powers (W), and the integrals ``input_work`` and
-    ``dissipated_energy`` (J) by glossary name. ``counters`` are the solver's: steps, evaluations, Jacobians,
-    decompositions.
+    driven loads) or None, coordinates, curvature and length (samples, segments), poses (samples, disks).
+    ``elongation`` and its rate are None in a scene without extension. ``ledger`` holds energies (J), powers
+    (W), and the integrals ``input_work`` and ``dissipated_energy`` (J) by glossary name. ``counters`` are the
+    solver's: steps, evaluations, Jacobians, decompositions.
     """
 
     time: np.ndarray

@@ -55,7 +55,7 @@ class Cable:
         return np.pad(given, (0, max(0, disks + 1 - given.size)), mode="edge")
 
 
-PerDisk = Annotated[tuple[Positive, ...], Field(strict=False)]
+PerDisk = Annotated[tuple[Positive, ...], Field(strict=False, min_length=1)]
 
 
 @dataclass(frozen=True, config=STRICT)

@@ -1,9 +1,9 @@
 """Generated kernels: written once for each structure of a scene, kept in the user's cache, loaded.
 
-Structure is what changes the equations: the effects, the coordinates of a segment, the number of
-cables, the largest number of payloads on one disk. Numbers are not, so a changed number never
-recompiles; a changed source file always does. A warm start finds its kernel by a hash and imports
-neither sympy nor the derivation.
+Structure is what changes the equations: the effects, the coordinates of a segment, the numbers of cables and
+of loads that change, the most payloads on one disk, whether a span has several segments, whether the holes of
+a cable differ. Numbers are not, so a changed number never recompiles; a changed source file always does. A
+warm start finds its kernel by a hash and imports neither sympy nor the derivation.
 """
 
 import hashlib

@@ -29,12 +29,13 @@ _OUTCOMES = {
 class Equilibrium:
     """An arm at rest under ``tension``, or the search for it where ``found`` is False.
 
-    Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,); ``elongation`` is None in
+    Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven loads,) or None; ``elongation`` is None in
     a scene without extension; SI units. ``residual`` is the largest unbalanced generalized force, N or N m.
     """
 
     outcome: Outcome
     tension: np.ndarray
+    load_factor: np.ndarray | None
     bend_angle: np.ndarray
     elongation: np.ndarray | None
     curvature: np.ndarray
@@ -101,6 +102,7 @@ class StaticSolver:
         return Equilibrium(
             outcome=_OUTCOMES[ended],
             tension=tension[: self.scene.cables],
+            load_factor=tension[self.scene.cables :] if self.scene.driven_loads else None,
             bend_angle=q[:, 0],
             elongation=elongation,
             **shape_of(arm, q[:, 0], elongation),

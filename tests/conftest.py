@@ -6,6 +6,7 @@ import pytest
 
 from continuum_dyn import Scenario, Trajectory, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
+from continuum_dyn.integrators import METHODS
 from statics import (
     RONE2012_HOLE_OFFSET,
     Arm,
@@ -22,6 +23,10 @@ from statics import (
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 UPPER = Cable("upper", RONE2012_HOLE_OFFSET)
 MOTION = (Inertia(), RotaryInertia(), MaterialDamping(retardation_time=1.2e-3))
+
+
+ANY_METHOD = [pytest.param(name, marks=pytest.mark.slow) if name == "midpoint" else name for name in METHODS]
+"""Every integrator; the one for undamped scenes has structures of its own to compile."""
 
 
 def rone2012(*, disks: int = 4, stiffness: float = 1.0, gravity: tuple[float, float] = (0.0, -9.81)) -> Scene:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,10 +10,11 @@ from conftest import SCENARIOS, motion
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.motion_kernel import write
+from continuum_dyn.modes import modes_at_rest
+from continuum_dyn.motion_kernel import RECIPE, write
 from continuum_dyn.profiles import Constant, Profile, Sine, Step, Table, spans
-from continuum_dyn.study import MotionStudy, Solver
-from statics import DiskLoad, DiskLoads, InputError, Outcome, Scene, equilibrium
+from continuum_dyn.study import MotionStudy, RampStudy, Solver
+from statics import DiskLoad, DiskLoads, InputError, Outcome, Scene, codegen, equilibrium
 
 
 @pytest.fixture(scope="module")
@@ -32,8 +34,17 @@ def test_constant_factor_is_a_constant_load(shaken: Scenario) -> None:
     by_factor = with_loads(shaken, driven, factors=(Constant(3.0),))
     by_load = with_loads(shaken, tripled)
     assert by_factor.scene.inputs == 2
-    np.testing.assert_allclose(motion(by_factor).disk_y, motion(by_load).disk_y, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(simulate(by_factor).equilibria[0].tip, simulate(by_load).equilibria[0].tip)
+    np.testing.assert_allclose(interpreted_rate(by_factor), interpreted_rate(by_load), rtol=1e-12)
+
+
+def interpreted_rate(scenario: Scenario) -> np.ndarray:
+    """dy/dt of one state that moves, without anything compiled."""
+    scene = scenario.scene
+    kernel: Any = codegen.load_interpreted(scene, RECIPE)
+    tables = scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)
+    y = np.append(np.random.default_rng(1).uniform(-1, 1, 8), [0.0, 0.0])
+    (span,) = spans(scenario.profiles, 1.0)
+    return kernel.rate(0.3, y, span.pieces, *tables, 1)
 
 
 def test_work_of_a_driven_load_is_booked(shaken: Scenario) -> None:
@@ -84,9 +95,23 @@ def test_study_at_rest_takes_the_factor_as_it_is(shaken: Scenario) -> None:
     load = DiskLoad(4, (0.0, 0.02), driven=True)
     stepped = with_loads(shaken, load, factors=(Step(0.5, 1.0),))
     run = simulate(stepped)
-    halved = with_loads(shaken, DiskLoad(4, (0.0, 0.01)))
+    halved = with_loads(shaken, DiskLoad(4, (0.0, 0.01), driven=True), factors=(Constant(1.0),))
     assert run.equilibria[0].tip == pytest.approx(equilibrium(halved.scene, 0.1).tip)
     assert run.outcome is Outcome.COMPLETED
+
+
+def test_modes_know_what_drives_the_scene(shaken: Scenario) -> None:
+    """A constant factor is part of the rest that the modes are about."""
+    pushed = with_loads(shaken, DiskLoad(4, (0.0, 0.5), driven=True), factors=(Constant(2.0),))
+    pulled = with_loads(shaken, DiskLoad(4, (0.0, 1.0), driven=True), factors=(Constant(1.0),))
+    first, second = (modes_at_rest(scenario).modes[0].frequency for scenario in (pushed, pulled))
+    assert first == pytest.approx(second, rel=1e-9)
+    assert first != pytest.approx(modes_at_rest(shaken).modes[0].frequency, rel=1e-3)
+
+
+def test_ramp_takes_no_profile_of_a_factor(shaken: Scenario) -> None:
+    with pytest.raises(InputError, match="one number for each load factor"):
+        replace(shaken, study=RampStudy(), tension=((0.0, 1.0),))
 
 
 def test_scene_without_driven_loads_has_none_in_its_kernel(shaken: Scenario) -> None:

@@ -220,6 +220,7 @@ def test_auto_goes_by_the_motions_own_modes() -> None:
     assert [chosen(free, 1e4), chosen(free, 1e4, exact=True)] == ["midpoint", "explicit"]
 
 
+@pytest.mark.slow
 def test_undamped_motion_keeps_its_energy_under_auto() -> None:
     free = moving(rone2012(), damping=False)
     released = Scenario(free, (Step(before=2.0, after=0.0),), MotionStudy(0.01, samples=11))

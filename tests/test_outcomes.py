@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import moving, rone2012
+from conftest import ANY_METHOD, moving, rone2012
 
 from continuum_dyn import Run, Scenario, simulate
 from continuum_dyn.dynamics import Dynamics, Observation
-from continuum_dyn.integrators import METHODS, Budget
+from continuum_dyn.integrators import Budget
 from continuum_dyn.profiles import Constant, Profile, Span, Step
 from continuum_dyn.study import Method, MotionStudy, RampStudy, Solver, StepResponseStudy
 from statics import InputError, Outcome, Scene
@@ -34,7 +34,7 @@ def assert_kept(run: Run, until: float) -> None:
     assert run.message
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ANY_METHOD)
 def test_step_into_the_hole_limit_says_when_and_where(method: Method) -> None:
     scenario = step_to(50.0, method=method)
     if method in ("RK23", "RK45", "DOP853"):  # with extension explicit methods crawl: 6e6 1/s

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from conftest import SCENARIOS, UPPER, motion, moving, rone2012
 
-from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
+from continuum_dyn import Scenario, Trajectory, cost, load_scenario, simulate
 from continuum_dyn.accuracy import tip_distance
+from continuum_dyn.integrators import Budget
 from continuum_dyn.mesh import between, extrapolated, to_mesh
 from continuum_dyn.profiles import Sine, Step
 from continuum_dyn.study import Accuracy, Method, MotionStudy, Solver
@@ -191,6 +192,20 @@ def test_search_for_a_mesh_that_is_stopped_keeps_what_it_found() -> None:
     assert found is not None
     assert not found.reached
     assert to_mesh(lambda _: None, 1e-9, most=4000) is None
+
+
+def test_mesh_that_the_budget_does_not_allow_ends_as_such() -> None:
+    """The budget holds for each mesh; the first one's motion does not fit."""
+    scenario = load_scenario(SCENARIOS / "continuous_arm.toml")
+    run = simulate(replace(scenario, accuracy=Accuracy(1e-8)), budget=Budget(steps=600))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "steps taken" in run.message
+
+
+def test_cost_of_a_scene_with_massless_nodes_says_what_to_give() -> None:
+    scenario = replace(drive(moving(meshed(2))), tension=(Step(0.0, 1.0),))
+    with pytest.raises(InputError, match="core_density"):
+        cost.measure(scenario)
 
 
 @pytest.mark.parametrize(

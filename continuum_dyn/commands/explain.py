@@ -103,7 +103,7 @@ def _print_equations(scene: Any, latex: bool) -> None:
         groups = collect(scene.effects, place, at)
         if not groups:
             continue
-        where = "span, from disk to disk" if place == "span" else place
+        where = "span, disk to disk" if place == "span" else place
         typer.echo(f"\nOne {where}: loads P and the displacements r they work along (Eq. 1)")
         for effect, pairs in groups:
             typer.echo(f"  {effect.name}")

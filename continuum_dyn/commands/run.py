@@ -192,7 +192,8 @@ def _accuracy(result: "Run", error: float) -> str:
             else f"= {found.subsegments}"
         )
         took.append(f"subsegments {meshes}, to which {length(found.estimate)} is due")
-    return f"tip within {length(error)}, checked; {', '.join(took)}"
+    verdict = "estimated, not what was asked" if "not reached" in result.message else "checked"
+    return f"tip within {length(error)}, {verdict}; {', '.join(took)}"
 
 
 def _ramp_table(result: "Run", points: list[Any]) -> Any:

@@ -42,7 +42,8 @@ def choose(dynamics: Dynamics, start: np.ndarray, span: Span, duration: float, e
         if fastest > STIFF * slowest:
             return Choice("chain", f"the scene is stiff, {found}, and damped: fast modes need no resolving")
         return Choice("explicit", f"the scene is not stiff, {found}: explicit steps are the cheapest")
-    periods = duration * dynamics.frequency / (2.0 * np.pi)
+    slowest = rates(dynamics, start, span)[0] if dynamics.size <= FEW else dynamics.frequency
+    periods = duration * slowest / (2.0 * np.pi)
     if periods > MANY_PERIODS and not exact:
         return Choice(
             "midpoint", f"nothing is damped, and over some {periods:.0g} periods energy must not drift"

@@ -1,6 +1,6 @@
 """Figures made from logs."""
 
-from itertools import pairwise
+from itertools import cycle, pairwise
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ SMALL_PART = 1e-9
 """Displacement (m) by which the core's points are differenced: a mode is drawn magnified, not bent double."""
 DISK_HEIGHT = 0.09
 """Of the disks in the picture of a mode, in the arm's length."""
-STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+")]
+STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+"), ("-", "*")]
 """Lines and markers that can be told apart in black and white."""
 LAWS = {
     "printed": {"ls": "--", "color": "C3", "lw": 1.6, "label": "equations as printed"},
@@ -56,7 +56,7 @@ def cost(measured: Cost) -> Figure:
     by_time, by_work, by_mesh = figure.subplots(1, 3, width_ratios=[1.0, 1.0, 0.9])
     by_work.sharey(by_time)
     methods = list(dict.fromkeys(price.method for price in measured.prices))
-    for method, (line, marker) in zip(methods, STYLES, strict=False):
+    for method, (line, marker) in zip(methods, cycle(STYLES), strict=False):
         prices = [price for price in measured.prices if price.method == method]
         errors = [price.error for price in prices]
         look = {
