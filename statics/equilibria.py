@@ -29,8 +29,9 @@ _OUTCOMES = {
 class Equilibrium:
     """An arm at rest under ``tension``, or the search for it where ``found`` is False.
 
-    Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven loads,) or None; ``elongation`` is None in
-    a scene without extension; SI units. ``residual`` is the largest unbalanced generalized force, N or N m.
+    Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
+    loads,) or None; ``elongation`` is None in a scene without extension; SI units. ``residual`` is the
+    largest unbalanced generalized force, N or N m.
     """
 
     outcome: Outcome

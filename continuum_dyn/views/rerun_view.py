@@ -239,14 +239,12 @@ def _plots(log: Log, story: Story) -> dict[str, Plot]:
     tension = dict(zip(log.cables, columns["tension"].T, strict=True))
     tip_x, tip_y = ({f"disk {disks}": columns[name][:, -1]} for name in ("disk_x", "disk_y"))
     curvature = {f"segment {n + 1}": columns["curvature"][:, n] for n in _spread(segments, MOST_SERIES)}
-    factors = (
-        {f"load {k}": f for k, f in enumerate(columns["load_factor"].T, start=1)}
-        if "load_factor" in columns
-        else {}
-    )
+    factors = columns.get("load_factor", np.empty((0, 0))).T
     plots = {
         "tension": Plot(QUANTITIES["tension"].label, tension),
-        "load_factor": Plot(QUANTITIES["load_factor"].label, factors),
+        "load_factor": Plot(
+            QUANTITIES["load_factor"].label, {f"load {k + 1}": f for k, f in enumerate(factors)}
+        ),
         "tip_x": Plot(f"tip: {QUANTITIES['disk_x'].label}", tip_x),
         "tip_y": Plot(f"tip: {QUANTITIES['disk_y'].label}", tip_y),
         "energy": Plot("energy", _labelled(columns, "kinetic_energy", "elastic_energy", "gravity_energy")),
