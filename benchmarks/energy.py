@@ -77,7 +77,7 @@ def run(extension: bool, solver: Solver, periods: float, steps_a_period: int | N
 
 def main() -> None:
     """Print the table and check the trends."""
-    midpoint, explicit = Solver("midpoint"), Solver("DOP853")
+    midpoint, drifting = Solver("midpoint"), Solver("DOP853")
     print("extension  method    periods  steps      time      range     trend / range")
     trends = [
         run(False, midpoint, PERIODS),
@@ -85,7 +85,7 @@ def main() -> None:
         run(True, midpoint, PERIODS, steps_a_period=100),
         run(True, midpoint, SHORT),
     ]
-    run(False, explicit, SHORT)
+    run(False, drifting, SHORT)
     assert max(map(abs, trends)) < LARGEST_TREND
 
 

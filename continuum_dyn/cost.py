@@ -14,8 +14,9 @@ import numpy as np
 from continuum_dyn.accuracy import tip_distance
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
-from continuum_dyn.integrators import METHODS, Budget, Monitor, rates
+from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.mesh import between
+from continuum_dyn.modes import rates
 from continuum_dyn.profiles import spans
 from continuum_dyn.study import Method, MotionStudy, Scenario, Solver
 from continuum_dyn.trajectory import Trajectory
@@ -41,6 +42,8 @@ SUBSEGMENTS = (1, 2, 4, 8, 16, 32, 64)
 TARGETS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 """Tip errors (m) whose cheapest settings are the frontier."""
 REPEATS = 5
+BRIEF_REPEATS = 101
+"""Repeats of what takes microseconds."""
 PATIENCE = 3.0
 """A run that takes longer than this (s) ends its method: tighter tolerances would take longer still."""
 
@@ -77,7 +80,7 @@ class MeshPrice:
 
 
 @dataclass(frozen=True)
-class Effect:
+class LeftOut:
     """What leaving an effect out does: to the tip (m, largest over the samples), to time, to stiffness.
 
     ``time_ratio`` is the time without it over the time with it, ``seconds`` the latter less the former;
@@ -104,7 +107,7 @@ class Cost:
     prices: tuple[Price, ...]
     meshes: tuple[MeshPrice, ...]
     no_meshes: str
-    effects: tuple[Effect, ...]
+    effects: tuple[LeftOut, ...]
     fastest_rate: float
     reference_gap: float
     over_budget: dict[str, float]
@@ -251,7 +254,7 @@ def _motion_seconds(scenario: Scenario) -> float | None:
 def _timed(work: Callable[[], Equilibrium]) -> tuple[Equilibrium, float]:
     """The answer, and the median time of some repeats after one that is not counted."""
     answer, times = work(), []
-    for _ in range(REPEATS):
+    for _ in range(BRIEF_REPEATS):
         started = time.perf_counter()
         work()
         times.append(time.perf_counter() - started)
@@ -264,7 +267,7 @@ def _in_order(methods: Iterable[str]) -> list[Method]:
 
 def effects(
     scenario: Scenario, motion: Motion, progress: Callable[[str], None] = lambda _: None
-) -> list[Effect]:
+) -> list[LeftOut]:
     """Each effect left out in turn, at a tolerance at which the integration's own error does not show."""
     solver = Solver("chain", rtol=1e-9, atol=1e-12)
     whole, seconds = motion.run(solver), motion.seconds(solver)
@@ -278,12 +281,12 @@ def effects(
             without = Motion(scenario.without(effect.name))
             without.warm_up("chain")
         except InputError:
-            found.append(Effect(effect.name))
+            found.append(LeftOut(effect.name))
             continue
         trajectory = without.run(solver, Budget(seconds=10.0 * PATIENCE))
         if trajectory is None:
-            found.append(Effect(effect.name))
+            found.append(LeftOut(effect.name))
             continue
         shift, spent = tip_distance(trajectory, whole), without.seconds(solver)
-        found.append(Effect(effect.name, shift, spent / seconds, without.fastest_rate(), seconds - spent))
+        found.append(LeftOut(effect.name, shift, spent / seconds, without.fastest_rate(), seconds - spent))
     return found

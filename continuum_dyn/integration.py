@@ -1,6 +1,6 @@
 """The equations of motion through ``scipy.integrate.solve_ivp``, from corner to corner.
 
-Integration restarts at every corner of a tension profile, so that no step crosses one.
+Integration restarts at every corner of a profile, so that no step crosses one.
 """
 
 import warnings

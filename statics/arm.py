@@ -45,7 +45,7 @@ class Cable:
     anchor: DiskNumber | None = None
 
     @property
-    def tapered(self) -> bool:
+    def holes_differ(self) -> bool:
         """Whether its holes do not all have the same offset."""
         return isinstance(self.hole_offset, tuple) and len(set(self.hole_offset)) > 1
 
@@ -226,9 +226,9 @@ class Arm:
         return tuple(cable.name for cable in self.cables)
 
     @property
-    def tapered(self) -> bool:
+    def holes_differ(self) -> bool:
         """Whether some cable's holes differ in their offsets."""
-        return any(cable.tapered for cable in self.cables)
+        return any(cable.holes_differ for cable in self.cables)
 
     def segment_columns(self) -> dict[str, np.ndarray]:
         """What the arm knows of each segment, by glossary name, shape (segments,)."""

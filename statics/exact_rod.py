@@ -120,7 +120,7 @@ def _check(scene: Scene) -> None:
         raise InputError(
             f"the exact rod does not know: {', '.join(unknown)}. Known: {', '.join(KNOWN_EFFECTS)}."
         )
-    if scene.arm.tapered or any(values is not None for values in vars(scene.arm.each).values()):
+    if scene.arm.holes_differ or any(values is not None for values in vars(scene.arm.each).values()):
         raise InputError("the exact rod knows arms of equal segments only.")
     if scene.driven_loads:
         raise InputError("the exact rod does not know loads that change in time.")

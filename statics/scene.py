@@ -80,9 +80,9 @@ class Scene:
         return self.cables > 0 and self.arm.subsegments > 1
 
     @property
-    def tapered(self) -> bool:
+    def holes_differ(self) -> bool:
         """Whether a cable in play has holes of different offsets."""
-        return self.cables > 0 and self.arm.tapered
+        return self.cables > 0 and self.arm.holes_differ
 
     def has(self, name: str) -> bool:
         """Whether the scene calls for the effect of that name."""

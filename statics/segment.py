@@ -51,17 +51,17 @@ def _tension(number: int) -> Any:
     return symbol(f"tension_{number}") * symbol(f"cable_passes_{number}")
 
 
-def _hole_offsets(number: int, tapered: bool) -> tuple[sp.Symbol, sp.Symbol]:
+def _hole_offsets(number: int, holes_differ: bool) -> tuple[sp.Symbol, sp.Symbol]:
     """Offsets of a cable's holes at the near and the far disk."""
     far = symbol(f"hole_offset_{number}")
-    return (symbol(f"near_hole_offset_{number}") if tapered else far), far
+    return (symbol(f"near_hole_offset_{number}") if holes_differ else far), far
 
 
 class SegmentSymbols:
     """One segment: coordinates, rates, geometry; any other glossary name is a parameter of it."""
 
-    def __init__(self, coordinates: tuple[str, ...], cables: int, tapered: bool = False) -> None:
-        self.tapered = tapered
+    def __init__(self, coordinates: tuple[str, ...], cables: int, holes_differ: bool = False) -> None:
+        self.holes_differ = holes_differ
         self.coordinates = [symbol(name) for name in coordinates]
         self.rates = [symbol(f"{name}_rate") for name in coordinates]
         self.accelerations = [symbol(f"{name}_acceleration") for name in coordinates]
@@ -94,11 +94,13 @@ class SegmentSymbols:
         return [self._cable(number) for number in range(1, self.number_of_cables + 1)]
 
     def _cable(self, number: int) -> CableSymbols:
-        near, far = _hole_offsets(number, self.tapered)
+        near, far = _hole_offsets(number, self.holes_differ)
         h, mean = self.half_angle, (near + far) / 2
         along = Sigma(0, h) * (self.length - self.bend_angle * mean)
         across = (far - near) * Sigma(-1, h)
-        return CableSymbols(_tension(number), sp.sqrt(along**2 + across**2) if self.tapered else along, along)
+        return CableSymbols(
+            _tension(number), sp.sqrt(along**2 + across**2) if self.holes_differ else along, along
+        )
 
 
 class DrivenLoad(NamedTuple):
@@ -115,9 +117,9 @@ class SpanSymbols:
     Ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with ``span_``.
     """
 
-    def __init__(self, cables: int, tapered: bool = False) -> None:
+    def __init__(self, cables: int, holes_differ: bool = False) -> None:
         self.number_of_cables = cables
-        self.tapered = tapered
+        self.holes_differ = holes_differ
         self.coordinates = [symbol(f"{end}{name}") for end in ("", "span_") for name in ("x", "y", "theta")]
         self.rates = [
             symbol(f"{end}{name}")
@@ -133,7 +135,7 @@ class SpanSymbols:
 
     def _cable(self, number: int) -> CableSymbols:
         x, y, theta, span_x, span_y, span_theta = self.coordinates
-        near, far = _hole_offsets(number, self.tapered)
+        near, far = _hole_offsets(number, self.holes_differ)
         along_x = x - span_x - far * sp.sin(theta) + near * sp.sin(span_theta)
         along_y = y - span_y + far * sp.cos(theta) - near * sp.cos(span_theta)
         mean = (theta + span_theta) / 2

@@ -116,14 +116,14 @@ def derive_statics(scene: Scene) -> SceneForces:
 
 def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
     """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
-    segment = SegmentSymbols(scene.coordinates, scene.cables, scene.tapered)
+    segment = SegmentSymbols(scene.coordinates, scene.cables, scene.holes_differ)
     disk = DiskSymbols(scene.payloads, scene.driven_loads)
     on_segment = collect(scene.effects, "segment", segment)
     on_disk = forces_at(collect(scene.effects, "disk", disk), disk)
     if not scene.spans:
         on_segment += collect(scene.effects, "span", segment)
         return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk)
-    span = SpanSymbols(scene.cables, scene.tapered)
+    span = SpanSymbols(scene.cables, scene.holes_differ)
     on_span = forces_at(collect(scene.effects, "span", span), span)
     return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk, span, on_span)
 

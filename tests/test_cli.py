@@ -129,9 +129,9 @@ def test_explain_names_what_can_be_left_out_at_the_accuracy_asked_for(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     measured = [
-        cost.Effect("bending"),
-        cost.Effect("gravity", 6e-4, 1.1, 2.87e7, -1e-4),
-        cost.Effect("extension", 8e-7, 0.7, 3.2e4, 1e-3),
+        cost.LeftOut("bending"),
+        cost.LeftOut("gravity", 6e-4, 1.1, 2.87e7, -1e-4),
+        cost.LeftOut("extension", 8e-7, 0.7, 3.2e4, 1e-3),
     ]
     monkeypatch.setattr(cost, "effects", lambda *_: measured)
     loose = runner.invoke(app, ["explain", STEP, "--measure"]).stdout

@@ -60,6 +60,7 @@ def test_rest_is_where_the_potential_energy_of_the_whole_arm_is_level() -> None:
     assert np.abs(slope).max() < 1e-9 * np.abs(scale).max()
 
 
+@pytest.mark.slow
 def test_tapered_arm_runs_and_its_log_says_what_differs(tmp_path: Path) -> None:
     run = simulate(load_scenario(SCENARIOS / "tapered_arm.toml"))
     assert run.outcome is Outcome.SETTLED

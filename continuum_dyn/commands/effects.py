@@ -9,7 +9,7 @@ import typer
 from continuum_dyn.commands.show import duration, length, mode_row, plain_table, with_status
 
 if TYPE_CHECKING:
-    from continuum_dyn.cost import Effect
+    from continuum_dyn.cost import LeftOut
     from continuum_dyn.modes import RestModes
     from continuum_dyn.study import Scenario
 
@@ -87,7 +87,7 @@ def show_what_to_leave_out(scenario: "Scenario") -> None:
     typer.echo("\n" + fill(f"{advice}. Allowed: {length(allowed)}, {said}. Each was left out alone.", 79))
 
 
-def _row(effect: "Effect", allowed: float) -> tuple[str, ...]:
+def _row(effect: "LeftOut", allowed: float) -> tuple[str, ...]:
     if effect.tip_shift is None or effect.seconds is None or effect.time_ratio is None:
         return ("no such motion",)
     costs = f"{duration(effect.seconds)}, {1.0 - effect.time_ratio:.0%}" if effect.seconds > 0.0 else "none"

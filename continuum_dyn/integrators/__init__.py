@@ -3,7 +3,7 @@
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 
 from continuum_dyn.integrators.chain_solver import ChainSolver
-from continuum_dyn.integrators.choice import Choice, check, choose, rates
+from continuum_dyn.integrators.choice import Choice, check, choose
 from continuum_dyn.integrators.guard import Budget, Guard, Monitor, interruptible
 from continuum_dyn.integrators.midpoint_solver import MidpointSolver
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, Tableau
@@ -37,5 +37,4 @@ __all__ = [
     "check",
     "choose",
     "interruptible",
-    "rates",
 ]

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from continuum_dyn.cost import Cost
 from continuum_dyn.modes import Mode, RestModes
@@ -157,6 +158,7 @@ def _draw_meshes(axes: Any, measured: Cost) -> None:
     both = [before + after for before, after in pairwise(times)]
     limits = [mesh.limit_error or 0.0 for mesh in measured.meshes[1:]]
     axes.loglog(both, limits, "--s", color="C0", ms=5, lw=1.2, label="from two")
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.legend()
 
 
