@@ -18,17 +18,14 @@ from typing import Any
 
 import sympy as sp
 
-from continuum_dyn.motion_steps import booked, far_velocity, span_velocity
+from continuum_dyn.motion_steps import booked, disk_in_motion
 from statics.recursion import (
     Reach,
     Step,
     Weights,
-    far_pose,
     name_forces,
     placed,
     reach_of,
-    span_ends,
-    turn_frame,
     turned,
 )
 from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols, symbol
@@ -74,13 +71,7 @@ def _name_partial_rates(trace: Trace, forces: SceneForces, reach: Reach) -> None
 def velocity_step(forces: SceneForces) -> Step:
     """Outwards: geometry, velocities, momenta of the disks, and the loads of a conservative scene."""
     trace = Trace()
-    reach = reach_of(forces, trace)
-    frame = turn_frame(trace, forces)
-    pose, at_disk = far_pose(trace, forces, reach)
-    motion, moving = far_velocity(trace, forces, reach)
-    ends, at = span_ends(trace, forces, frame, at_disk)
-    ends_motion, at_start = span_velocity(trace, forces)
-    at |= moving | at_start
+    reach, carried, at = disk_in_motion(trace, forces)
     name_forces(trace, forces, at)
     _name_partial_rates(trace, forces, reach)
     for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
@@ -93,7 +84,7 @@ def velocity_step(forces: SceneForces) -> Step:
         ("q", "u", "tension", "segments", "disks", "chain"),
         trace,
         results={"input_power": (0.0, symbol("input_power") + trace.let("added_input_power", power))},
-        carried=frame | pose | motion | ends | ends_motion,
+        carried=carried,
     )
 
 

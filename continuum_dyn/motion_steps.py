@@ -32,7 +32,7 @@ ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 POWERS = ("input_power", "dissipated_power")
 
 
-def far_velocity(
+def _far_velocity(
     trace: Trace, forces: SceneForces, reach: Reach
 ) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
     """Velocity of the far disk: what is carried on, and what the disk's symbols stand for."""
@@ -72,7 +72,7 @@ def _far_acceleration(
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
 
-def span_velocity(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+def _span_velocity(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
     """Velocity of the span's start: what is carried on, and what its symbols stand for."""
     carried, at_start = {}, {}
     for rate in [] if forces.span is None else forces.span.rates[3:]:
@@ -80,6 +80,20 @@ def span_velocity(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], di
         at_start[rate] = trace.let(f"from_{name}", from_start(symbol(f"near_{name}"), rate))
         carried[rate.name] = (0.0, at_start[rate])
     return carried, at_start
+
+
+def disk_in_motion(trace: Trace, forces: SceneForces) -> tuple[Reach, dict[str, Any], dict[Any, Any]]:
+    """Poses and velocities of the far disk and of the span's start.
+
+    Returns the segment's reach, what is carried on, and what the symbols of the forces stand for.
+    """
+    reach = reach_of(forces, trace)
+    frame = turn_frame(trace, forces)
+    pose, at_disk = far_pose(trace, forces, reach)
+    motion, moving = _far_velocity(trace, forces, reach)
+    ends, at = span_ends(trace, forces, frame, at_disk)
+    ends_motion, at_start = _span_velocity(trace, forces)
+    return reach, frame | pose | motion | ends | ends_motion, at | moving | at_start
 
 
 def booked(forces: SceneForces, kind: str, account: str, at: dict[Any, Any]) -> Any:
@@ -90,14 +104,9 @@ def booked(forces: SceneForces, kind: str, account: str, at: dict[Any, Any]) -> 
 def motion_step(forces: SceneForces) -> Step:
     """Outwards: geometry, velocities, accelerations, and all loads, inertia included."""
     trace = Trace()
-    reach = reach_of(forces, trace)
-    frame = turn_frame(trace, forces)
-    pose, at_disk = far_pose(trace, forces, reach)
-    motion, moving = far_velocity(trace, forces, reach)
+    reach, carried, at = disk_in_motion(trace, forces)
     push, pushed = _far_acceleration(trace, forces, reach)
-    ends, at = span_ends(trace, forces, frame, at_disk)
-    ends_motion, at_start = span_velocity(trace, forces)
-    at |= moving | pushed | at_start
+    at |= pushed
     name_forces(trace, forces, at)
     powers = {name: trace.let(f"added_{name}", booked(forces, "powers", name, at)) for name in POWERS}
     return Step(
@@ -106,7 +115,7 @@ def motion_step(forces: SceneForces) -> Step:
         ("q", "u", "w", "tension", "segments", "disks", "chain"),
         trace,
         results={name: (0.0, symbol(name) + added) for name, added in powers.items()},
-        carried=frame | pose | motion | push | ends | ends_motion,
+        carried=carried | push,
     )
 
 
@@ -161,13 +170,7 @@ def residual_tangent_step(forces: SceneForces) -> Step:
 def observe_motion_step(forces: SceneForces) -> Step:
     """Outwards: poses and velocities of the disks, energies and powers."""
     trace = Trace()
-    reach = reach_of(forces, trace)
-    frame = turn_frame(trace, forces)
-    pose, at_disk = far_pose(trace, forces, reach)
-    motion, moving = far_velocity(trace, forces, reach)
-    ends, at = span_ends(trace, forces, frame, at_disk)
-    ends_motion, at_start = span_velocity(trace, forces)
-    at |= moving | at_start
+    _, carried, at = disk_in_motion(trace, forces)
     accounts = {
         name: booked(forces, kind, name, at)
         for kind, names in (("energies", ENERGIES), ("powers", POWERS))
@@ -181,7 +184,7 @@ def observe_motion_step(forces: SceneForces) -> Step:
         results={
             name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in accounts.items()
         },
-        carried=frame | pose | motion | ends | ends_motion,
+        carried=carried,
         stores={
             "pose": [at[coordinate] for coordinate in forces.disk.coordinates],
             "velocity": [at[rate] for rate in forces.disk.rates],

@@ -174,6 +174,20 @@ def step_once(
     return displacement(chain, work[5]), rate, iterations
 
 
+def shrinkage(part: float, order: int) -> float:
+    """Factor for a step whose error was ``part`` times the tolerance, too much or not finite."""
+    return max(MOST_SHRINK, SAFETY * part ** (-1.0 / order)) if math.isfinite(part) else 0.25
+
+
+def growth(part: float, last_part: float, order: int) -> float:
+    """Factor for the step after one whose error was ``part`` of the tolerance, after one of ``last_part``.
+
+    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds.
+    """
+    factor = SAFETY * part ** (-0.7 / order) * last_part ** (0.3 / order)
+    return min(MOST_GROWTH, max(MOST_SHRINK, factor))
+
+
 def advance(
     t_bound: float,
     h: float,
@@ -197,7 +211,7 @@ def advance(
     stages = (np.empty(shape), np.empty(shape), np.empty(shape))
     work, chain = np.empty((6, n, dofs)), np.empty((n, CHAIN_COLUMNS))
     taken, rejected, iterations = 0, 0, 0
-    last_error = tolerance
+    last_part = 1.0
     while taken < len(times) - 1:
         t = times[taken]
         left = t_bound - t
@@ -225,13 +239,11 @@ def advance(
         iterations += took
         if not error <= tolerance:
             rejected += 1
-            shrink = 0.25 if not math.isfinite(error) else SAFETY * (tolerance / error) ** (1.0 / order)
-            h = step * max(MOST_SHRINK, shrink)
+            h = step * shrinkage(error / tolerance, order)
             continue
-        error = max(error, 1e-6 * tolerance)
-        growth = SAFETY * (tolerance / error) ** (0.7 / order) * (last_error / tolerance) ** (0.3 / order)
-        last_error = error
-        h = max(h, step) if reaches and growth > 1.0 else step * min(MOST_GROWTH, max(MOST_SHRINK, growth))
+        part = max(error / tolerance, 1e-6)
+        factor, last_part = growth(part, last_part, order), part
+        h = max(h, step) if reaches and factor > 1.0 else step * factor
         states[taken + 1, 2 * n * dofs :] = 0.0
         bad = clearance_sweep(stages[0][count - 1], arm[1]) <= 0.0 or not finite(states[taken + 1])
         if bad and taken > 0:
