@@ -218,7 +218,7 @@ def _meshes(scenario: Scenario, progress: Callable[[str], None]) -> tuple[list[M
     """The equilibrium under the last tensions and the motion on every mesh; or why there is no exact rod."""
     assert isinstance(scenario.study, MotionStudy)
     last = spans(scenario.profiles, scenario.study.duration)[-1]
-    tension = last.tension(np.array([last.end]))[0]
+    tension = last.inputs(np.array([last.end]))[0]
     progress("exact rod")
     try:
         rod = exact_rod(scenario.scene, tension[: scenario.scene.cables]).tip

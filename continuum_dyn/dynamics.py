@@ -126,16 +126,16 @@ class Dynamics:
         """
         q, _ = self.split(y[None, : 2 * self.size])
         pose, velocity = np.empty((2, 1, self.scene.arm.segments, 3))
-        ledger, tension = np.empty((1, len(LEDGER))), np.zeros((1, self.scene.inputs))
-        self.kernel.observe(q, change[None], tension, self.segments, self.disks, pose, velocity, ledger)
+        ledger, inputs = np.empty((1, len(LEDGER))), np.zeros((1, len(self.scene.inputs)))
+        self.kernel.observe(q, change[None], inputs, self.segments, self.disks, pose, velocity, ledger)
         return velocity[0, self.scene.arm.disk_nodes]
 
-    def observe(self, states: np.ndarray, tension: np.ndarray) -> Observation:
+    def observe(self, states: np.ndarray, inputs: np.ndarray) -> Observation:
         """Poses, tip speed, energies and powers at states (samples, size) under inputs (samples, inputs)."""
         q, u = self.split(states)
         pose, velocity = np.empty((*q.shape[:2], 3)), np.empty((*q.shape[:2], 3))
         ledger = np.empty((len(states), len(LEDGER)))
-        self.kernel.observe(q, u, tension, self.segments, self.disks, pose, velocity, ledger)
+        self.kernel.observe(q, u, inputs, self.segments, self.disks, pose, velocity, ledger)
         disk_x, disk_y, disk_theta = np.moveaxis(pose[:, self.scene.arm.disk_nodes], -1, 0)
         return Observation(
             coordinates=q,

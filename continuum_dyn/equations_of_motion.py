@@ -14,23 +14,24 @@ if TYPE_CHECKING:
         CHAIN_COLUMNS,
         DISPLACEMENT_START,
         ELIMINATE_START,
-        MOTION_START,
-        MOTION_TANGENT_START,
-        OBSERVE_START,
+        INPUTS,
         RESIDUAL_TANGENT_START,
         displacement_step,
+        motion_start,
         motion_step,
+        motion_tangent_start,
         motion_tangent_step,
+        observe_start,
         observe_step,
         residual_tangent_step,
     )
     from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
 
 
-def tension_at(t: float, pieces: np.ndarray, tension: np.ndarray) -> None:
-    """Tensions at time t from one piece of each profile; its columns are those of ``profiles.Piece``."""
-    for c in range(tension.shape[0]):
-        tension[c] = (
+def inputs_at(t: float, pieces: np.ndarray, inputs: np.ndarray) -> None:
+    """Inputs at time t from one piece of each profile; its columns are those of ``profiles.Piece``."""
+    for c in range(pieces.shape[0]):
+        inputs[c] = (
             pieces[c, 1] + pieces[c, 2] * (t - pieces[c, 0]) + pieces[c, 3] * math.sin(pieces[c, 4] * t)
         )
 
@@ -39,15 +40,15 @@ def motion_sweep(
     q: np.ndarray,
     u: np.ndarray,
     w: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
 ) -> tuple[float, float]:
     """Outwards: motion and loads of all segments and disks; returns power in and power dissipated."""
-    carried = MOTION_START
+    carried = motion_start(inputs)
     for i in range(q.shape[0]):
-        carried = motion_step(i, carried, q, u, w, tension, segments, disks, chain)
+        carried = motion_step(i, carried, q, u, w, inputs, segments, disks, chain)
     return carried[0], carried[1]
 
 
@@ -71,7 +72,7 @@ def displacement(chain: np.ndarray, change: np.ndarray) -> float:
 def acceleration(
     q: np.ndarray,
     u: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
@@ -80,7 +81,7 @@ def acceleration(
     """Accelerations of all coordinates into ``w``, shape (n, dofs); returns power in and dissipated."""
     residual = np.empty_like(q)
     w[:] = 0.0
-    powers = motion_sweep(q, u, w, tension, segments, disks, chain)
+    powers = motion_sweep(q, u, w, inputs, segments, disks, chain)
     residual_sweep(disks, chain, residual)
     solve_mass(segments, disks, chain, residual, w)
     return powers
@@ -93,12 +94,12 @@ def rate(
     n = segments.shape[0]
     size = n * dofs
     q, u = y[:size].reshape((n, dofs)), y[size : 2 * size].reshape((n, dofs))
-    tension, chain = np.empty(pieces.shape[0]), np.empty((n, CHAIN_COLUMNS))
-    tension_at(t, pieces, tension)
+    inputs, chain = np.empty(INPUTS), np.empty((n, CHAIN_COLUMNS))
+    inputs_at(t, pieces, inputs)
     y_rate = np.empty_like(y)
     y_rate[:size] = y[size : 2 * size]
     w = y_rate[size : 2 * size].reshape((n, dofs))
-    y_rate[2 * size], y_rate[2 * size + 1] = acceleration(q, u, tension, segments, disks, chain, w)
+    y_rate[2 * size], y_rate[2 * size + 1] = acceleration(q, u, inputs, segments, disks, chain, w)
     return y_rate
 
 
@@ -112,21 +113,21 @@ def rate_jacobian(
     n = segments.shape[0]
     size = n * dofs
     q, u = y[:size].copy().reshape((n, dofs)), y[size : 2 * size].copy().reshape((n, dofs))
-    tension, chain = np.empty(pieces.shape[0]), np.empty((n, CHAIN_COLUMNS))
-    tension_at(t, pieces, tension)
+    inputs, chain = np.empty(INPUTS), np.empty((n, CHAIN_COLUMNS))
+    inputs_at(t, pieces, inputs)
     w, residual, w_change = np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
-    acceleration(q, u, tension, segments, disks, chain, w)
-    motion_sweep(q, u, w, tension, segments, disks, chain)
+    acceleration(q, u, inputs, segments, disks, chain, w)
+    motion_sweep(q, u, w, inputs, segments, disks, chain)
     residual_sweep(disks, chain, residual)
     jacobian = np.zeros((y.shape[0], y.shape[0]))
     direction = np.zeros((2, n, dofs))
     for column in range(2 * size):
         k = column % size
         direction[column // size, k // dofs, k % dofs] = 1.0
-        carried = MOTION_TANGENT_START
+        carried = motion_tangent_start(inputs)
         for i in range(n):
             carried = motion_tangent_step(
-                i, carried, q, u, w, tension, segments, disks, chain, direction[0], direction[1]
+                i, carried, q, u, w, inputs, segments, disks, chain, direction[0], direction[1]
             )
         jacobian[2 * size, column], jacobian[2 * size + 1, column] = carried[0], carried[1]
         inward = RESIDUAL_TANGENT_START
@@ -143,21 +144,21 @@ def rate_jacobian(
 def observe(
     q: np.ndarray,
     u: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     pose: np.ndarray,
     velocity: np.ndarray,
     ledger: np.ndarray,
 ) -> None:
-    """What follows from q, u (samples, n, dofs) and tension (samples, cables), for every sample.
+    """What follows from q, u (samples, n, dofs) and inputs (samples, INPUTS), for every sample.
 
     Poses and velocities of the disks, shape (samples, n, 3); and into ``ledger``, shape (samples, 5):
     kinetic, elastic and gravity energy, power in, power dissipated.
     """
     for s in range(q.shape[0]):
-        carried = OBSERVE_START
+        carried = observe_start(inputs[s])
         for i in range(q.shape[1]):
-            carried = observe_step(i, carried, q[s], u[s], tension[s], segments, disks, pose[s], velocity[s])
+            carried = observe_step(i, carried, q[s], u[s], inputs[s], segments, disks, pose[s], velocity[s])
         for k in range(5):
             ledger[s, k] = carried[k]

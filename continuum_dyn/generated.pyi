@@ -4,34 +4,33 @@ import numpy as np
 
 Carried = tuple[float, ...]
 
+INPUTS: int
 CHAIN_COLUMNS: int
 DISPLACEMENT_START: Carried
 ELIMINATE_START: Carried
 MOMENTUM_START: Carried
-MOTION_START: Carried
-MOTION_TANGENT_START: Carried
-OBSERVE_START: Carried
 RESIDUAL_TANGENT_START: Carried
-VELOCITY_START: Carried
 
+def motion_start(inputs: np.ndarray) -> Carried: ...
 def motion_step(
     i: int,
     carried: Carried,
     q: np.ndarray,
     u: np.ndarray,
     w: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
 ) -> Carried: ...
+def motion_tangent_start(inputs: np.ndarray) -> Carried: ...
 def motion_tangent_step(
     i: int,
     carried: Carried,
     q: np.ndarray,
     u: np.ndarray,
     w: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
@@ -41,24 +40,26 @@ def motion_tangent_step(
 def residual_tangent_step(
     i: int, carried: Carried, disks: np.ndarray, chain: np.ndarray, residual_change: np.ndarray
 ) -> Carried: ...
+def observe_start(inputs: np.ndarray) -> Carried: ...
 def observe_step(
     i: int,
     carried: Carried,
     q: np.ndarray,
     u: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     pose: np.ndarray,
     velocity: np.ndarray,
 ) -> Carried: ...
 def displacement_step(i: int, carried: Carried, chain: np.ndarray, change: np.ndarray) -> Carried: ...
+def velocity_start(inputs: np.ndarray) -> Carried: ...
 def velocity_step(
     i: int,
     carried: Carried,
     q: np.ndarray,
     u: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,

@@ -54,7 +54,7 @@ def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
 class _Samples(NamedTuple):
     time: np.ndarray
     states: np.ndarray
-    tension: np.ndarray
+    inputs: np.ndarray
 
 
 def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome, str] | None]:
@@ -90,7 +90,7 @@ def integrate(
     monitor.reached = (0.0, y)
     steps, rejections = monitor.steps, monitor.rejections
     solver = with_step(dynamics, solver, stretches, y)
-    parts = [_Samples(samples[:1], y[None, :], stretches[0].tension(samples[:1]))]
+    parts = [_Samples(samples[:1], y[None, :], stretches[0].inputs(samples[:1]))]
     counters: Counter[str] = Counter()
     with interruptible(monitor), warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -101,16 +101,16 @@ def integrate(
             solution = _solve_span(dynamics, solver, span, np.append(inside, span.end), monitor)
             time = np.array(solution.t[: len(inside)], dtype=float)
             states = np.reshape(solution.y, (dynamics.state_size, -1)).T[: len(time)]
-            parts.append(_Samples(time, states, span.tension(time)))
+            parts.append(_Samples(time, states, span.inputs(time)))
             counters.update(_counted(solution, dynamics, solver))
             if solution.status != 0:
                 parts.append(_last_reached(parts, span, monitor.reached))
                 break
-    times, states, tension = (np.concatenate(column) for column in zip(*parts, strict=True))
+    times, states, inputs = (np.concatenate(column) for column in zip(*parts, strict=True))
     counters["steps"] = monitor.steps - steps
     if solver.method in TABLEAUX:
         counters["rejections"] = monitor.rejections - rejections
-    whole = trajectory_of(dynamics, times, states, tension, dict(counters))
+    whole = trajectory_of(dynamics, times, states, inputs, dict(counters))
     finite = whole.finite()
     if finite.time.size < whole.time.size:
         monitor.stop(Outcome.DIVERGED, f"energies overflow at t = {times[finite.time.size]:.6g} s")
@@ -122,7 +122,7 @@ def _last_reached(parts: list[_Samples], span: Span, reached: tuple[float, np.nd
     t, y = reached
     sampled = any(part.time.size and part.time[-1] >= t for part in parts)
     time = np.array([] if sampled else [t])
-    return _Samples(time, np.tile(y, (time.size, 1)), span.tension(time))
+    return _Samples(time, np.tile(y, (time.size, 1)), span.inputs(time))
 
 
 def _counted(solution: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:

@@ -81,7 +81,7 @@ def velocity_step(forces: SceneForces) -> Step:
     return Step(
         "velocity_step",
         "Outwards: reach, velocity, momentum of the disk, loads without inertia; power in.",
-        ("q", "u", "tension", "segments", "disks", "chain"),
+        ("q", "u", "inputs", "segments", "disks", "chain"),
         trace,
         results={"input_power": (0.0, symbol("input_power") + trace.let("added_input_power", power))},
         carried=carried,

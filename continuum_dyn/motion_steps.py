@@ -112,7 +112,7 @@ def motion_step(forces: SceneForces) -> Step:
     return Step(
         "motion_step",
         "Outwards: reach, velocity, acceleration, loads; power in and power dissipated.",
-        ("q", "u", "w", "tension", "segments", "disks", "chain"),
+        ("q", "u", "w", "inputs", "segments", "disks", "chain"),
         trace,
         results={name: (0.0, symbol(name) + added) for name, added in powers.items()},
         carried=carried | push,
@@ -179,7 +179,7 @@ def observe_motion_step(forces: SceneForces) -> Step:
     return Step(
         "observe_step",
         "Outwards: poses and velocities of the disks, energies and powers.",
-        ("q", "u", "tension", "segments", "disks", "pose", "velocity"),
+        ("q", "u", "inputs", "segments", "disks", "pose", "velocity"),
         trace,
         results={
             name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in accounts.items()

@@ -174,7 +174,7 @@ class Span:
     end: float
     pieces: np.ndarray
 
-    def tension(self, time: np.ndarray) -> np.ndarray:
+    def inputs(self, time: np.ndarray) -> np.ndarray:
         """Values at the given times of this span, shape (times, profiles); N for tensions."""
         start, value, slope, amplitude, frequency = self.pieces.T
         t = np.asarray(time)[:, None]

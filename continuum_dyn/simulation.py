@@ -200,7 +200,7 @@ def _motion(
         budget=budget,
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
-    end = statics.solve(stretches[-1].tension(np.array([study.duration]))[0], start.coordinates)
+    end = statics.solve(stretches[-1].inputs(np.array([study.duration]))[0], start.coordinates)
     path = statics.ramp(moved.trajectory.inputs, start.coordinates) if study.static_path else []
     run = Run(
         scenario,

@@ -67,19 +67,19 @@ class Trajectory:
 
 
 def trajectory_of(
-    dynamics: Dynamics, times: np.ndarray, states: np.ndarray, tension: np.ndarray, counters: dict[str, int]
+    dynamics: Dynamics, times: np.ndarray, states: np.ndarray, inputs: np.ndarray, counters: dict[str, int]
 ) -> Trajectory:
-    """The trajectory of states (samples, size) at those times under tensions (samples, cables)."""
+    """The trajectory of states (samples, size) at those times under inputs (samples, inputs)."""
     arm = dynamics.scene.arm
     cables = dynamics.scene.cables
-    seen = dynamics.observe(states, tension)
+    seen = dynamics.observe(states, inputs)
     q, u = seen.coordinates, seen.rates
     extends = dynamics.dofs == 2
     elongation = q[:, :, 1] if extends else None
     return Trajectory(
         time=times,
-        tension=tension[:, :cables],
-        load_factor=tension[:, cables:] if dynamics.scene.driven_loads else None,
+        tension=inputs[:, :cables],
+        load_factor=inputs[:, cables:] if dynamics.scene.driven_loads else None,
         bend_angle=q[:, :, 0],
         bend_angle_rate=u[:, :, 0],
         elongation=elongation,

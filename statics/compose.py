@@ -1,7 +1,7 @@
 """From sympy steps to the text of one readable kernel module.
 
 Every symbol that a step uses is a number that it is handed (``carried``), an element of an array
-(coordinates, tensions, parameters), or was computed by an earlier step; then it becomes a column of
+(coordinates, inputs, parameters), or was computed by an earlier step; then it becomes a column of
 ``chain``. What nothing asks for is not generated.
 """
 
@@ -23,9 +23,9 @@ HEADER = '''"""{title}
 
 Generated; a change made here is lost. Coordinates of a segment: {coordinates}.
 Effects: {effects}.
-Arguments: q, u, w (n, coordinates): coordinates, rates, accelerations; tension (cables,), N, then the
-factors of loads that change; segments (n, SEGMENT_COLUMNS), disks (n, DISK_COLUMNS): parameters; chain
-(n, CHAIN_COLUMNS): what one sweep leaves for the next. SI units.
+Arguments: q, u, w (n, coordinates): coordinates, rates, accelerations; inputs (INPUTS,): {inputs};
+segments (n, SEGMENT_COLUMNS), disks (n, DISK_COLUMNS): parameters; chain (n, CHAIN_COLUMNS): what one
+sweep leaves for the next. SI units.
 """
 
 import math
@@ -60,8 +60,10 @@ def compose(
             title=title,
             coordinates=", ".join(map(str, forces.segment.coordinates)),
             effects=", ".join(effects),
+            inputs=", ".join(forces.inputs) or "none",
         ),
-        _constants(bodies, columns),
+        _constants(forces, bodies, columns),
+        *(_compiled(_start(body, columns)) for body in bodies if _starts_from_inputs(body)),
         *(_inlined(ladder_source(order)) for order in sorted(ladders)),
         *map(_inlined, functions),
         *(_functions_of(path) for path in sources),
@@ -133,9 +135,7 @@ def _columns(forces: SceneForces, steps: Sequence[Step], bodies: list[_Body]) ->
     ):
         text |= {s: f"{array}[i, {k}]" for k, s in enumerate(symbols)}
         text |= {symbol(f"{s}_change"): f"{array}_change[i, {k}]" for k, s in enumerate(symbols)}
-    cables = forces.segment.number_of_cables
-    text |= {symbol(f"tension_{c + 1}"): f"tension[{c}]" for c in range(cables)}
-    text |= {load.factor: f"tension[{cables + k}]" for k, load in enumerate(forces.disk.driven_loads)}
+    text |= {symbol(name): f"inputs[{k}]" for k, name in enumerate(forces.inputs)}
     owner = _owners(steps)
     for step in steps:
         for array, values in step.stores.items():
@@ -152,18 +152,39 @@ def _columns(forces: SceneForces, steps: Sequence[Step], bodies: list[_Body]) ->
     return _Columns(text, segments, disks, chain, owner)
 
 
-def _constants(bodies: list[_Body], columns: _Columns) -> str:
+def _constants(forces: SceneForces, bodies: list[_Body], columns: _Columns) -> str:
     lines = [
+        f"INPUTS = {len(forces.inputs)}",
         f"SEGMENT_COLUMNS = {tuple(columns.segments)!r}",
         f"DISK_COLUMNS = {tuple(columns.disks)!r}",
         f"CHAIN_COLUMNS = {len(columns.chain)}",
     ]
     for body in bodies:
-        start = tuple(value for value, _ in (body.step.results | body.carried).values())
-        lines.append(f"{body.step.name.removesuffix('_step').upper()}_START = {start!r}")
+        if not _starts_from_inputs(body):
+            start = tuple(value for value, _ in (body.step.results | body.carried).values())
+            lines.append(f"{body.step.name.removesuffix('_step').upper()}_START = {start!r}")
         if "pivots" in body.step.stores:
             lines.append(f"PIVOT_COLUMNS = {len(body.step.stores['pivots'])}")
     return "\n".join(lines)
+
+
+def _starts_from_inputs(body: _Body) -> bool:
+    """Whether what a sweep starts with may depend on the inputs: then it is a function of them."""
+    return "inputs" in body.step.arrays
+
+
+def _start(body: _Body, columns: _Columns) -> str:
+    """Source of the function that returns what the step is handed before the first segment."""
+    values = [value for value, _ in (body.step.results | body.carried).values()]
+    loads = sorted(_symbols(values), key=lambda s: _by_place(columns.text[s]))
+    lines = [f"{s} = {columns.text[s]}" for s in loads]
+    signature = f"def {body.step.name.removesuffix('_step')}_start(inputs):"
+    doc = f'"""What {body.step.name} is handed before the first segment."""'
+    return "\n    ".join([signature, doc, *lines, f"return ({', '.join(map(_start_value, values))},)"])
+
+
+def _start_value(value: Any) -> str:
+    return repr(value) if isinstance(value, float) else _code(value)
 
 
 def _print_step(body: _Body, columns: _Columns, ladders: set[int]) -> str:

@@ -128,7 +128,7 @@ class StaticSolver:
 
     def warm_up(self) -> None:
         """Compile the kernel, or load it compiled, so that what follows is solving alone."""
-        self.solve(np.zeros(self.scene.inputs))
+        self.solve(np.zeros(len(self.scene.inputs)))
 
 
 def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, np.ndarray]:

@@ -10,27 +10,34 @@ Carried = tuple[float, ...]
 
 SEGMENT_COLUMNS: tuple[str, ...]
 DISK_COLUMNS: tuple[str, ...]
+INPUTS: int
 CHAIN_COLUMNS: int
 PIVOT_COLUMNS: int
 CLEARANCE_START: Carried
-POSE_START: Carried
-OBSERVE_START: Carried
 RESIDUAL_START: Carried
 ELIMINATE_START: Carried
 SUBSTITUTE_START: Carried
 
 def clearance_step(i: int, carried: Carried, q: np.ndarray, segments: np.ndarray) -> Carried: ...
+def pose_start(inputs: np.ndarray) -> Carried: ...
 def pose_step(
     i: int,
     carried: Carried,
     q: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
 ) -> Carried: ...
+def observe_start(inputs: np.ndarray) -> Carried: ...
 def observe_step(
-    i: int, carried: Carried, q: np.ndarray, segments: np.ndarray, disks: np.ndarray, pose: np.ndarray
+    i: int,
+    carried: Carried,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    pose: np.ndarray,
 ) -> Carried: ...
 def residual_step(
     i: int, carried: Carried, disks: np.ndarray, chain: np.ndarray, residual: np.ndarray

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from statics.generated import (
         CHAIN_COLUMNS,
         ELIMINATE_START,
-        OBSERVE_START,
         PIVOT_COLUMNS,
-        POSE_START,
+        observe_start,
         observe_step,
+        pose_start,
         pose_step,
     )
 
@@ -37,12 +37,12 @@ ROUNDING = 1e-11
 
 
 def pose_sweep(
-    q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, chain: np.ndarray
+    q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, disks: np.ndarray, chain: np.ndarray
 ) -> tuple[float, float, float]:
     """Outwards, at rest: potential energy, the sum of its parts' sizes, and the clearance."""
-    carried = POSE_START
+    carried = pose_start(inputs)
     for i in range(q.shape[0]):
-        carried = pose_step(i, carried, q, tension, segments, disks, chain)
+        carried = pose_step(i, carried, q, inputs, segments, disks, chain)
     return carried[0], carried[1], carried[2]
 
 
@@ -151,7 +151,7 @@ def shorten(
     change: np.ndarray,
     factor: float,
     promised: tuple[float, float, float],
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
@@ -165,7 +165,7 @@ def shorten(
     potential, slope, curvature = promised
     for _ in range(60):
         advance(q, factor, change, trial)
-        seen = pose_sweep(trial, tension, segments, disks, chain)
+        seen = pose_sweep(trial, inputs, segments, disks, chain)
         fall = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
         if seen[2] > 0.0 and seen[0] <= potential + fall:
             return factor, seen
@@ -179,7 +179,7 @@ def lengthen(
     factor: float,
     largest: float,
     seen: tuple[float, float, float],
-    tension: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
@@ -188,16 +188,16 @@ def lengthen(
     """Double an accepted step while that lowers the potential: an indefinite matrix says little of length."""
     while 2.0 * factor <= largest:
         advance(q, 2.0 * factor, change, trial)
-        further = pose_sweep(trial, tension, segments, disks, chain)
+        further = pose_sweep(trial, inputs, segments, disks, chain)
         if further[2] <= 0.0 or further[0] >= seen[0]:
             break
         factor, seen = 2.0 * factor, further
     advance(q, factor, change, trial)
-    return pose_sweep(trial, tension, segments, disks, chain)
+    return pose_sweep(trial, inputs, segments, disks, chain)
 
 
 def find_equilibrium(
-    q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, unit: float, most: int
+    q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, disks: np.ndarray, unit: float, most: int
 ) -> tuple[int, int]:
     """Move ``q``, shape (n, dofs), to an equilibrium; ``unit`` is the length elongations compare with.
 
@@ -207,7 +207,7 @@ def find_equilibrium(
     residual, descent = np.empty_like(q), np.empty_like(q)
     change, trial = np.empty_like(q), np.empty_like(q)
     pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
-    potential, scale, clearance = pose_sweep(q, tension, segments, disks, chain)
+    potential, scale, clearance = pose_sweep(q, inputs, segments, disks, chain)
     for iteration in range(1, most + 1):
         residual_sweep(disks, chain, residual)
         negative = int(eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, pivots)[0])
@@ -232,7 +232,7 @@ def find_equilibrium(
             change,
             min(1.0, LARGEST_TURN / max(turn, 1e-30)),
             (fall_from, slope, curvature),
-            tension,
+            inputs,
             segments,
             disks,
             chain,
@@ -242,7 +242,7 @@ def find_equilibrium(
             return (UNSTABLE if curvature < 0.0 else NOT_FOUND), iteration
         if negative > 0:
             largest = max(LARGEST_TURN / max(turn, 1e-30), 1.0)
-            seen = lengthen(q, change, factor, largest, seen, tension, segments, disks, chain, trial)
+            seen = lengthen(q, change, factor, largest, seen, inputs, segments, disks, chain, trial)
         q[:] = trial
         potential, scale, clearance = seen
         if clearance < AT_LIMIT:
@@ -251,7 +251,7 @@ def find_equilibrium(
 
 
 def examine(
-    q: np.ndarray, tension: np.ndarray, segments: np.ndarray, disks: np.ndarray, pose: np.ndarray
+    q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, disks: np.ndarray, pose: np.ndarray
 ) -> tuple[float, float, float, int]:
     """Poses of the disks into ``pose``, shape (n, 3).
 
@@ -260,11 +260,11 @@ def examine(
     """
     chain, residual, descent = np.empty((q.shape[0], CHAIN_COLUMNS)), np.empty_like(q), np.empty_like(q)
     pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
-    pose_sweep(q, tension, segments, disks, chain)
+    pose_sweep(q, inputs, segments, disks, chain)
     residual_sweep(disks, chain, residual)
     keeping_signs = (0.0, 0.0, 1.0, *ELIMINATE_START[3:])
     negative = eliminate_sweep(keeping_signs, segments, disks, chain, residual, descent, pivots)[0]
-    carried = OBSERVE_START
+    carried = observe_start(inputs)
     for i in range(q.shape[0]):
-        carried = observe_step(i, carried, q, segments, disks, pose)
+        carried = observe_step(i, carried, q, inputs, segments, disks, pose)
     return carried[0], carried[1], np.abs(residual).max(), int(negative)

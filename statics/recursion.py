@@ -211,7 +211,7 @@ def pose_step(forces: SceneForces) -> Step:
     return Step(
         "pose_step",
         "Outwards, at rest: reach, loads, potential energy, clearance.",
-        ("q", "tension", "segments", "disks", "chain"),
+        ("q", "inputs", "segments", "disks", "chain"),
         trace,
         results={
             "potential": (0.0, symbol("potential") + energy),
@@ -232,7 +232,12 @@ def name_forces(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> None:
     for place, part in forces.places.items():
         trace.let(f"{place}_force", placed(part.force, at))
         for name in ("mass", "damping", "stiffness"):
-            trace.symmetric(f"{place}_{name}", placed(getattr(part, name), at))
+            _let_matrix(trace, forces.conservative, f"{place}_{name}", placed(getattr(part, name), at))
+
+
+def _let_matrix(trace: Trace, symmetric: bool, name: str, value: sp.Matrix) -> sp.Matrix:
+    """Name the entries of a matrix, or those of the upper triangle of a symmetric one."""
+    return trace.symmetric(name, value) if symmetric else trace.let(name, value)
 
 
 def _named(name: str, value: sp.Matrix) -> sp.Matrix:
@@ -240,12 +245,17 @@ def _named(name: str, value: sp.Matrix) -> sp.Matrix:
     return sp.Matrix(*value.shape, lambda r, c: value[r, c] if value[r, c].is_Atom else symbol(f"{name}_{r}"))
 
 
-def _symmetric_named(name: str, value: sp.Matrix) -> sp.Matrix:
-    """Likewise for ``Trace.symmetric``."""
-    upper = sp.Matrix(
+def _named_matrix(symmetric: bool, name: str, value: sp.Matrix) -> sp.Matrix:
+    """Likewise for ``_let_matrix``."""
+    named = sp.Matrix(
         *value.shape, lambda r, c: value[r, c] if value[r, c].is_Atom else symbol(f"{name}_{r}{c}")
     )
-    return sp.Matrix(*value.shape, lambda r, c: upper[min(r, c), max(r, c)])
+    return _mirrored(named) if symmetric else named
+
+
+def _mirrored(value: sp.Matrix) -> sp.Matrix:
+    """The symmetric matrix with that upper triangle."""
+    return sp.Matrix(*value.shape, lambda r, c: value[min(r, c), max(r, c)])
 
 
 def observe_step(forces: SceneForces) -> Step:
@@ -261,7 +271,7 @@ def observe_step(forces: SceneForces) -> Step:
     return Step(
         "observe_step",
         "Outwards, at rest: poses of the disks, elastic and gravity energy.",
-        ("q", "segments", "disks", "pose"),
+        ("q", "inputs", "segments", "disks", "pose"),
         trace,
         results={
             name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in energies.items()
@@ -323,44 +333,57 @@ IMPLICIT = Weights(1, symbol("damping_weight"), symbol("stiffness_weight"))
 
 
 def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
-    """Inwards: eliminate one segment's coordinates from the chain's Newton system H dq = -residual."""
+    """Inwards: eliminate one segment's coordinates from the chain's Newton system H dq = -residual.
+
+    With A, C, B, D its blocks, by rows the segment's and the near disk's: V' = D - B A^-1 C. Where the system
+    is symmetric B is the transpose of C.
+    """
     trace = Trace()
     reach = reach_of(forces)
+    symmetric = forces.conservative or weights.damping == weights.stiffness == 0
     dofs = len(forces.segment.coordinates)
-    S, X, here = reach.partials, reach.transition, _weighted(weights, forces.on_disk, "disk")
+    S, X, here = reach.partials, reach.transition, _weighted(weights, symmetric, forces, "disk")
     if forces.on_span is not None:
         S, X, here = S.col_join(sp.zeros(3, dofs)), sp.diag(X, sp.eye(3)), sp.diag(here, sp.zeros(3))
-        here += _weighted(weights, forces.on_span, "span")
+        here += _weighted(weights, symmetric, forces, "span")
     poses = range(S.shape[0])
-    carried = sp.Matrix(*X.shape, lambda r, c: symbol(f"carried_{min(r, c)}{max(r, c)}"))
+    carried = sp.Matrix(*X.shape, lambda r, c: symbol(f"carried_{r}{c}"))
+    if symmetric:
+        carried = _mirrored(carried)
     load = sp.Matrix([symbol(f"carried_load_{r}") for r in poses])
-    V = trace.symmetric("V", carried + here)
+    V = _let_matrix(trace, symmetric, "V", carried + here)
     VS, VX = trace.let("VS", V * S), trace.let("VX", V * X)
-    A = S.T * VS + _weighted(weights, forces.on_segment, "segment")
-    C = VS.T * X
-    D = X.T * VX
+    A = S.T * VS + _weighted(weights, symmetric, forces, "segment")
+    B, C, D = X.T * VS, S.T * VX, X.T * VX
     if weights.stiffness != 0:
         f = sp.Matrix([symbol("reaction_0"), symbol("reaction_1")])
         A += weights.stiffness * sp.Matrix(dofs, dofs, lambda a, b: f.dot(reach.by_qq[a][b]))
         for a in range(dofs):
-            C[a, 2] += weights.stiffness * f.dot(turned(reach.by_q[:, a]))
+            turning = weights.stiffness * f.dot(turned(reach.by_q[:, a]))
+            B[2, a] += turning
+            C[a, 2] += turning
         D[2, 2] -= weights.stiffness * f.dot(reach.whole)
-    A, C = trace.symmetric("A", A), trace.let("C", C)
+    A = _let_matrix(trace, symmetric, "A", A)
+    B = trace.let("B", B)
+    C = B.T if symmetric else trace.let("C", C)
     b = trace.let("b", S.T * load - sp.Matrix([symbol(f"residual_{a}") for a in range(dofs)]))
-    inverse, results = _pivot_inverse(trace, A, weights)
+    inverse, results = _pivot_inverse(trace, symmetric, A, weights)
     gain = trace.let("gain", inverse * C)
     descent = trace.let("descent", inverse * b)
-    next_load = X.T * load - C.T * descent
-    next_V = D - C.T * gain
+    next_load = X.T * load - B * descent
+    next_V = D - B * gain
     if forces.on_span is not None:
-        next_V, next_load = _merged(trace.symmetric("next_V", next_V), trace.let("next_load", next_load))
+        next_V, next_load = _merged(
+            _let_matrix(trace, symmetric, "next_V", next_V), trace.let("next_load", next_load)
+        )
+    entries = [(r, c) for r in poses for c in poses if c >= r or not symmetric]
     return Step(
         "eliminate_step",
         "Inwards: one segment's coordinates eliminated; the rest goes to its near disk.",
         ("segments", "disks", "chain", "residual", "descent", "pivots"),
         trace,
         results={str(weight): (0.0, weight) for weight in weights.handed} | results,
-        carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r in poses for c in poses if c >= r}
+        carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r, c in entries}
         | {f"carried_load_{r}": (0.0, next_load[r]) for r in poses},
         stores={"descent": list(descent)}
         | ({} if weights.definite else {"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]}),
@@ -375,22 +398,25 @@ def _merged(V: sp.Matrix, load: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     return start * merged_V + (1 - start) * V, start * merged_load + (1 - start) * load
 
 
-def _weighted(weights: Weights, forces: Any, place: str) -> sp.Matrix:
+def _weighted(weights: Weights, symmetric: bool, forces: SceneForces, place: str) -> sp.Matrix:
+    part = forces.places[place]
     return (
-        weights.mass * _symmetric_named(f"{place}_mass", forces.mass)
-        + weights.damping * _symmetric_named(f"{place}_damping", forces.damping)
-        + weights.stiffness * _symmetric_named(f"{place}_stiffness", forces.stiffness)
+        weights.mass * _named_matrix(symmetric, f"{place}_mass", part.mass)
+        + weights.damping * _named_matrix(symmetric, f"{place}_damping", part.damping)
+        + weights.stiffness * _named_matrix(symmetric, f"{place}_stiffness", part.stiffness)
     )
 
 
-def _pivot_inverse(trace: Trace, A: sp.Matrix, weights: Weights) -> tuple[sp.Matrix, dict[str, Any]]:
+def _pivot_inverse(
+    trace: Trace, symmetric: bool, A: sp.Matrix, weights: Weights
+) -> tuple[sp.Matrix, dict[str, Any]]:
     """The pivot's inverse and what the sweep counts.
 
     Where the matrix may be indefinite the pivot is made positive, unless the sweep is asked to keep its
     sign; otherwise there is nothing to count.
     """
     dofs = A.shape[0]
-    if weights.definite:
+    if weights.definite or not symmetric:
         return _plain_inverse(trace, A), {}
     entries = [(r, c) for r in range(dofs) for c in range(r, dofs)]
     units = [symbol("rest_length")] if dofs == 2 else []
@@ -411,9 +437,9 @@ def _pivot_inverse(trace: Trace, A: sp.Matrix, weights: Weights) -> tuple[sp.Mat
 def _plain_inverse(trace: Trace, A: sp.Matrix) -> sp.Matrix:
     if A.shape[0] == 1:
         return sp.Matrix([[trace.let("inverse_00", 1 / A[0, 0])]])
-    determinant = trace.let("determinant", A[0, 0] * A[1, 1] - A[0, 1] ** 2)
-    scaled = sp.Matrix([[A[1, 1], -A[0, 1]], [-A[0, 1], A[0, 0]]]) / determinant
-    return trace.symmetric("inverse", scaled)
+    determinant = trace.let("determinant", A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0])
+    scaled = sp.Matrix([[A[1, 1], -A[0, 1]], [-A[1, 0], A[0, 0]]]) / determinant
+    return trace.symmetric("inverse", scaled) if A == A.T else trace.let("inverse", scaled)
 
 
 def substitute_step(forces: SceneForces) -> Step:

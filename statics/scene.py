@@ -65,9 +65,11 @@ class Scene:
         return sum(effect.driven for effect in self.effects if isinstance(effect, DiskLoads))
 
     @property
-    def inputs(self) -> int:
-        """How many numbers drive the scene: the tensions of its cables, then the factors of driven loads."""
-        return self.cables + self.driven_loads
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the numbers that drive the scene: tensions of its cables, then factors of driven loads."""
+        tensions = (f"tension_{number}" for number in range(1, self.cables + 1))
+        factors = (f"load_factor_{number}" for number in range(1, self.driven_loads + 1))
+        return (*tensions, *factors)
 
     @property
     def payloads(self) -> int:

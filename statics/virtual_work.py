@@ -42,9 +42,13 @@ class Forces:
 class SceneForces:
     """The forces of one segment, of one disk, and of one span, with the symbols that they are written in.
 
-    A span that is one segment has no forces of its own: they are the segment's.
+    A span that is one segment has no forces of its own: they are the segment's. ``inputs`` are the names of
+    the numbers that drive the scene. ``conservative`` says that every load at rest has a potential; then
+    all matrices are symmetric.
     """
 
+    conservative: bool
+    inputs: tuple[str, ...]
     segment: SegmentSymbols
     disk: DiskSymbols
     on_segment: Forces
@@ -100,6 +104,15 @@ def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
     raise InputError(f"no potential is known for the load {load} along {displacement}")
 
 
+def has_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
+    """Whether every load that acts at rest has a potential."""
+    pairs = [pair for effect, group in groups if effect.acts_at_rest for pair in group]
+    try:
+        return all(potential(pair, coordinates) is not None for pair in pairs)
+    except InputError:
+        return False
+
+
 def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
     """The pairs of every effect at that place; a displacement that the scene does not have drops out."""
     return [
@@ -118,14 +131,23 @@ def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneFor
     """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
     segment = SegmentSymbols(scene.coordinates, scene.cables, scene.holes_differ)
     disk = DiskSymbols(scene.payloads, scene.driven_loads)
+    span = SpanSymbols(scene.cables, scene.holes_differ) if scene.spans else None
     on_segment = collect(scene.effects, "segment", segment)
-    on_disk = forces_at(collect(scene.effects, "disk", disk), disk)
-    if not scene.spans:
-        on_segment += collect(scene.effects, "span", segment)
-        return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk)
-    span = SpanSymbols(scene.cables, scene.holes_differ)
-    on_span = forces_at(collect(scene.effects, "span", span), span)
-    return SceneForces(segment, disk, forces_at(on_segment, segment), on_disk, span, on_span)
+    on_disk = collect(scene.effects, "disk", disk)
+    on_span = collect(scene.effects, "span", span or segment)
+    if span is None:
+        on_segment, on_span = on_segment + on_span, []
+    places = [(on_segment, segment), (on_disk, disk), (on_span, span or segment)]
+    return SceneForces(
+        all(has_potentials(groups, at.coordinates) for groups, at in places),
+        scene.inputs,
+        segment,
+        disk,
+        forces_at(on_segment, segment),
+        forces_at(on_disk, disk),
+        span,
+        None if span is None else forces_at(on_span, span),
+    )
 
 
 def _at_rest(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:

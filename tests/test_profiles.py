@@ -22,7 +22,7 @@ def sampled(profile: Profile, times: np.ndarray, duration: float) -> np.ndarray:
     values = np.empty(times.size)
     for span in stretches:
         inside = (times >= span.start) & (times <= span.end)
-        values[inside] = span.tension(times[inside])[:, 0]
+        values[inside] = span.inputs(times[inside])[:, 0]
     return values
 
 
@@ -122,7 +122,7 @@ def test_profiles_that_cannot_be_are_refused(wrong: Callable[[], Profile]) -> No
 def test_lowest_value_of_a_profile(profile: Profile, least: float) -> None:
     assert lowest(profile) == least
     values = np.concatenate(
-        [span.tension(np.linspace(span.start, span.end, 999)) for span in spans((profile,), 2.0)]
+        [span.inputs(np.linspace(span.start, span.end, 999)) for span in spans((profile,), 2.0)]
     )
     assert values.min() == pytest.approx(least, abs=1e-4)
 

@@ -67,7 +67,7 @@ class Case:
         self.duration = duration
         self.samples = np.linspace(0.0, duration, study.samples)
         self.stretches = spans(self.scenario.profiles, self.duration)
-        self.tension = float(self.stretches[-1].tension(self.samples[-1:])[0, 0])
+        self.tension = float(self.stretches[-1].inputs(self.samples[-1:])[0, 0])
         self.dynamics = Dynamics(self.scenario.scene)
         self.rest = equilibrium(self.scenario.scene, self.scenario.initial_tension).coordinates
 

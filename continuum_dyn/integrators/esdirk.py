@@ -10,7 +10,7 @@ disk under the error of the coordinates.
 
 Arguments travel in groups:
 
-- ``arm``: pieces of the tension profiles, segment table, disk table;
+- ``arm``: pieces of the inputs' profiles, segment table, disk table;
 - ``method``: a, c, error weights, predictor of the tableau;
 - ``stages``: q, u, w, shape (stages, n, dofs);
 - ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 2): row r is the end of step r.
@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from continuum_dyn.equations_of_motion import acceleration, displacement, motion_sweep, tension_at
-    from continuum_dyn.generated import CHAIN_COLUMNS, ELIMINATE_START
+    from continuum_dyn.equations_of_motion import acceleration, displacement, inputs_at, motion_sweep
+    from continuum_dyn.generated import CHAIN_COLUMNS, ELIMINATE_START, INPUTS
     from statics.chain import clearance_sweep, eliminate_sweep, residual_sweep, substitute_sweep
 
     Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -75,7 +75,7 @@ def solve_stage(
     allowed: float,
     rate: float,
     stage: "Moving",
-    tension: np.ndarray,
+    inputs: np.ndarray,
     arm: "Moving",
     chain: np.ndarray,
     work: np.ndarray,
@@ -100,7 +100,7 @@ def solve_stage(
             return iterations, rate, power_in, dissipated
         if iterations == MOST_ITERATIONS:
             return -iterations, rate, power_in, dissipated
-        power_in, dissipated = motion_sweep(q, u, w, tension, segments, disks, chain)
+        power_in, dissipated = motion_sweep(q, u, w, inputs, segments, disks, chain)
         residual_sweep(disks, chain, residual)
         eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
         substitute_sweep(chain, descent, change)
@@ -142,13 +142,13 @@ def step_once(
     size = n * dofs
     stage_q[0] = y[:size].reshape((n, dofs))
     stage_u[0] = y[size : 2 * size].reshape((n, dofs))
-    tension = np.empty(arm[0].shape[0])
+    inputs = np.empty(INPUTS)
     known_q, known_u, error = work[3].ravel(), work[4].ravel(), work[5].ravel()
     flat_u, flat_w = stage_u.reshape((count, size)), stage_w.reshape((count, size))
     iterations = 0
     for s in range(1, count):
         prepare(s, h, y, a, predictor, flat_u, flat_w, known_q, known_u)
-        tension_at(t + c[s] * h, arm[0], tension)
+        inputs_at(t + c[s] * h, arm[0], inputs)
         took, rate, next_power[0], next_power[1] = solve_stage(
             work[3],
             work[4],
@@ -156,7 +156,7 @@ def step_once(
             STAGE_PART * tolerance,
             rate,
             (stage_q[s], stage_u[s], stage_w[s]),
-            tension,
+            inputs,
             arm,
             chain,
             work,
@@ -275,7 +275,7 @@ def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, wor
     _, n, dofs = accelerations.shape
     size = n * dofs
     pieces, segments, disks = arm
-    tension, between = np.empty(pieces.shape[0]), np.empty((2, states.shape[1]))
+    inputs, between = np.empty(INPUTS), np.empty((2, states.shape[1]))
     h = times[row] - times[row - 1]
     middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / math.sqrt(5.0)
     at = np.array([middle - apart, middle + apart])
@@ -284,9 +284,9 @@ def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, wor
         ends = powers[row - 1, part] + powers[row, part]
         states[row, 2 * size + part] = states[row - 1, 2 * size + part] + h / 12.0 * ends
     for m in range(2):
-        tension_at(at[m], pieces, tension)
+        inputs_at(at[m], pieces, inputs)
         q, u = between[m, :size].reshape((n, dofs)), between[m, size : 2 * size].reshape((n, dofs))
-        power_in, dissipated = motion_sweep(q, u, work[0], tension, segments, disks, chain)
+        power_in, dissipated = motion_sweep(q, u, work[0], inputs, segments, disks, chain)
         states[row, 2 * size] += 5.0 * h / 12.0 * power_in
         states[row, 2 * size + 1] += 5.0 * h / 12.0 * dissipated
 
@@ -299,11 +299,11 @@ def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") ->
     times, states, accelerations, powers = records
     pieces, segments, disks = arm
     _, n, dofs = accelerations.shape
-    tension, chain = np.empty(pieces.shape[0]), np.empty((n, CHAIN_COLUMNS))
-    tension_at(t, pieces, tension)
+    inputs, chain = np.empty(INPUTS), np.empty((n, CHAIN_COLUMNS))
+    inputs_at(t, pieces, inputs)
     times[0], states[0] = t, y
     q, u = states[0, : n * dofs].reshape((n, dofs)), states[0, n * dofs : 2 * n * dofs].reshape((n, dofs))
-    powers[0] = acceleration(q, u, tension, segments, disks, chain, accelerations[0])
+    powers[0] = acceleration(q, u, inputs, segments, disks, chain, accelerations[0])
     return displacement(chain, accelerations[0])
 
 

@@ -12,7 +12,7 @@ symplectic, since the mass depends on q. The matrix leaves out the velocity's ow
 
 Arguments travel in groups:
 
-- ``arm``: pieces of the tension profiles, segment table, disk table;
+- ``arm``: pieces of the inputs' profiles, segment table, disk table;
 - ``records``: q, p, shape (rows, n, dofs), and input work (rows,): row r is the end of step r;
 - ``past``: mean rates of the last steps, latest first, shape (PAST, n, dofs);
 - ``work``: shape (WORK, n, dofs), left to the functions below.
@@ -24,13 +24,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from continuum_dyn.equations_of_motion import displacement, tension_at
+    from continuum_dyn.equations_of_motion import displacement, inputs_at
     from continuum_dyn.generated import (
         CHAIN_COLUMNS,
         ELIMINATE_START,
+        INPUTS,
         MOMENTUM_START,
-        VELOCITY_START,
         momentum_step,
+        velocity_start,
         velocity_step,
     )
     from statics.chain import clearance_sweep, eliminate_sweep, substitute_sweep
@@ -49,7 +50,7 @@ STAGNANT = 1e5
 def momentum_sweeps(
     q: np.ndarray,
     u: np.ndarray,
-    tension: np.ndarray,
+    inputs: np.ndarray,
     arm: "Arm",
     chain: np.ndarray,
     residual: np.ndarray,
@@ -58,9 +59,9 @@ def momentum_sweeps(
 ) -> float:
     """dV/dq into ``residual``, dT/du into ``momentum``, dT/dq into ``slope``; returns the power in."""
     _, segments, disks = arm
-    outward = VELOCITY_START
+    outward = velocity_start(inputs)
     for i in range(q.shape[0]):
-        outward = velocity_step(i, outward, q, u, tension, segments, disks, chain)
+        outward = velocity_step(i, outward, q, u, inputs, segments, disks, chain)
     reaction, beyond = RESIDUAL_START, MOMENTUM_START
     for i in range(q.shape[0] - 1, -1, -1):
         reaction = residual_step(i, reaction, disks, chain, residual)
@@ -88,15 +89,15 @@ def solve_step(
     """
     middle, residual, momentum, slope, descent, change = work
     _, segments, disks = arm
-    tension = np.empty(arm[0].shape[0])
-    tension_at(t + 0.5 * h, arm[0], tension)
+    inputs = np.empty(INPUTS)
+    inputs_at(t + 0.5 * h, arm[0], inputs)
     start = (0.25 * h * h, *ELIMINATE_START[1:])
     last, power = math.inf, 0.0
     for iteration in range(1, MOST_ITERATIONS + 1):
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 middle[i, k] = q[i, k] + 0.5 * h * v[i, k]
-        power = momentum_sweeps(middle, v, tension, arm, chain, residual, momentum, slope)
+        power = momentum_sweeps(middle, v, inputs, arm, chain, residual, momentum, slope)
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 pull[i, k] = residual[i, k] - slope[i, k]
@@ -162,7 +163,7 @@ def start_momenta(q: np.ndarray, u: np.ndarray, arm: "Arm", p: np.ndarray) -> No
     """The momenta of coordinates and rates, into ``p``."""
     n, dofs = q.shape
     work, chain = np.empty((2, n, dofs)), np.empty((n, CHAIN_COLUMNS))
-    momentum_sweeps(q, u, np.zeros(arm[0].shape[0]), arm, chain, work[0], p, work[1])
+    momentum_sweeps(q, u, np.zeros(INPUTS), arm, chain, work[0], p, work[1])
 
 
 def sample(
