@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from continuum_dyn.cable_change_sweep import measure_changes
     from continuum_dyn.generated import (
         CHAIN_COLUMNS,
         DISPLACEMENT_START,
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
         observe_step,
         residual_tangent_step,
     )
+    from continuum_dyn.moving_cable_sweep import measure_moving_cables
     from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
 
 
@@ -46,7 +48,8 @@ def motion_sweep(
     chain: np.ndarray,
 ) -> tuple[float, float]:
     """Outwards: motion and loads of all segments and disks; returns power in and power dissipated."""
-    carried = motion_start(inputs)
+    measure_moving_cables(q, u, segments, chain)
+    carried = motion_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         carried = motion_step(i, carried, q, u, w, inputs, segments, disks, chain)
     return carried[0], carried[1]
@@ -124,7 +127,8 @@ def rate_jacobian(
     for column in range(2 * size):
         k = column % size
         direction[column // size, k // dofs, k % dofs] = 1.0
-        carried = motion_tangent_start(inputs)
+        measure_changes(q, u, segments, chain, direction[0], direction[1])
+        carried = motion_tangent_start(inputs, segments, chain)
         for i in range(n):
             carried = motion_tangent_step(
                 i, carried, q, u, w, inputs, segments, disks, chain, direction[0], direction[1]
@@ -156,9 +160,13 @@ def observe(
     Poses and velocities of the disks, shape (samples, n, 3); and into ``ledger``, shape (samples, 5):
     kinetic, elastic and gravity energy, power in, power dissipated.
     """
+    chain = np.empty((q.shape[1], CHAIN_COLUMNS))
     for s in range(q.shape[0]):
-        carried = observe_start(inputs[s])
+        measure_moving_cables(q[s], u[s], segments, chain)
+        carried = observe_start(inputs[s], segments, chain)
         for i in range(q.shape[1]):
-            carried = observe_step(i, carried, q[s], u[s], inputs[s], segments, disks, pose[s], velocity[s])
+            carried = observe_step(
+                i, carried, q[s], u[s], inputs[s], segments, disks, chain, pose[s], velocity[s]
+            )
         for k in range(5):
             ledger[s, k] = carried[k]

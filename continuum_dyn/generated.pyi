@@ -6,12 +6,28 @@ Carried = tuple[float, ...]
 
 INPUTS: int
 CHAIN_COLUMNS: int
+BEYOND_TANGENT_START: Carried
 DISPLACEMENT_START: Carried
 ELIMINATE_START: Carried
+LENGTHS_TANGENT_START: Carried
 MOMENTUM_START: Carried
 RESIDUAL_TANGENT_START: Carried
 
-def motion_start(inputs: np.ndarray) -> Carried: ...
+def lengths_step(
+    i: int, carried: Carried, q: np.ndarray, u: np.ndarray, segments: np.ndarray, chain: np.ndarray
+) -> Carried: ...
+def lengths_tangent_step(
+    i: int,
+    carried: Carried,
+    q: np.ndarray,
+    u: np.ndarray,
+    segments: np.ndarray,
+    chain: np.ndarray,
+    q_change: np.ndarray,
+    u_change: np.ndarray,
+) -> Carried: ...
+def beyond_tangent_step(i: int, carried: Carried, chain: np.ndarray) -> Carried: ...
+def motion_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def motion_step(
     i: int,
     carried: Carried,
@@ -23,7 +39,7 @@ def motion_step(
     disks: np.ndarray,
     chain: np.ndarray,
 ) -> Carried: ...
-def motion_tangent_start(inputs: np.ndarray) -> Carried: ...
+def motion_tangent_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def motion_tangent_step(
     i: int,
     carried: Carried,
@@ -40,7 +56,7 @@ def motion_tangent_step(
 def residual_tangent_step(
     i: int, carried: Carried, disks: np.ndarray, chain: np.ndarray, residual_change: np.ndarray
 ) -> Carried: ...
-def observe_start(inputs: np.ndarray) -> Carried: ...
+def observe_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def observe_step(
     i: int,
     carried: Carried,
@@ -49,11 +65,12 @@ def observe_step(
     inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
+    chain: np.ndarray,
     pose: np.ndarray,
     velocity: np.ndarray,
 ) -> Carried: ...
 def displacement_step(i: int, carried: Carried, chain: np.ndarray, change: np.ndarray) -> Carried: ...
-def velocity_start(inputs: np.ndarray) -> Carried: ...
+def velocity_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def velocity_step(
     i: int,
     carried: Carried,

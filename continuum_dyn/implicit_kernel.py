@@ -24,15 +24,17 @@ def write(scene: Scene) -> str:
 
     forces = derive_dynamics(scene)
     steps = [
+        *motion_steps.measuring_steps(forces),
         motion_steps.motion_step(forces),
         recursion.residual_step(forces),
         recursion.eliminate_step(forces, recursion.IMPLICIT),
-        recursion.substitute_step(forces),
+        recursion.substitute_step(forces, recursion.IMPLICIT),
         recursion.displacement_step(forces),
         recursion.clearance_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    return compose("Implicit steps of a planar cable-driven arm.", forces, names, steps, _SOURCES)
+    sources = (*([motion_kernel.CABLES] if forces.coupled else []), *_SOURCES)
+    return compose("Implicit steps of a planar cable-driven arm.", forces, names, steps, sources)
 
 
 RECIPE = Recipe("implicit", write, (*motion_kernel.RECIPE.sources, *_SOURCES, Path(__file__)))

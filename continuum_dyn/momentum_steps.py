@@ -19,6 +19,7 @@ from typing import Any
 import sympy as sp
 
 from continuum_dyn.motion_steps import booked, disk_in_motion
+from statics.cable_tension import along_cables
 from statics.recursion import (
     Reach,
     Step,
@@ -72,6 +73,7 @@ def velocity_step(forces: SceneForces) -> Step:
     """Outwards: geometry, velocities, momenta of the disks, and the loads of a conservative scene."""
     trace = Trace()
     reach, carried, at = disk_in_motion(trace, forces)
+    cables = along_cables(trace, forces.coupled, at, moves=False)
     name_forces(trace, forces, at)
     _name_partial_rates(trace, forces, reach)
     for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
@@ -84,7 +86,7 @@ def velocity_step(forces: SceneForces) -> Step:
         ("q", "u", "inputs", "segments", "disks", "chain"),
         trace,
         results={"input_power": (0.0, symbol("input_power") + trace.let("added_input_power", power))},
-        carried=carried,
+        carried=carried | cables,
     )
 
 

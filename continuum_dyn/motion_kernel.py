@@ -9,6 +9,7 @@ from statics.scene import Scene
 _HERE = Path(__file__).parent
 _CHAIN = Path(statics.chain.__file__)
 _EQUATIONS = _HERE / "equations_of_motion.py"
+CABLES, CABLE_CHANGES = _HERE / "moving_cable_sweep.py", _HERE / "cable_change_sweep.py"
 
 
 def write(scene: Scene) -> str:
@@ -19,18 +20,22 @@ def write(scene: Scene) -> str:
     from statics.compose import compose
 
     forces = derive_dynamics(scene)
+    measured, changes = motion_steps.measuring_steps(forces), motion_steps.measuring_tangents(forces)
     steps = [
+        *measured,
         motion_steps.motion_step(forces),
         recursion.residual_step(forces),
         recursion.eliminate_step(forces, recursion.ACCELERATION),
-        recursion.substitute_step(forces),
+        recursion.substitute_step(forces, recursion.ACCELERATION),
+        *changes,
         motion_steps.motion_tangent_step(forces),
         motion_steps.residual_tangent_step(forces),
         motion_steps.observe_motion_step(forces),
         recursion.clearance_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    return compose("Dynamics of a planar cable-driven arm.", forces, names, steps, (_CHAIN, _EQUATIONS))
+    sources = (*([CABLES, CABLE_CHANGES] if forces.coupled else []), _CHAIN, _EQUATIONS)
+    return compose("Dynamics of a planar cable-driven arm.", forces, names, steps, sources)
 
 
 RECIPE = Recipe(
@@ -38,6 +43,8 @@ RECIPE = Recipe(
     write,
     (
         *DERIVATION,
+        CABLES,
+        CABLE_CHANGES,
         _EQUATIONS,
         *(_HERE / f"{stem}.py" for stem in ("virtual_power", "motion_steps", "motion_kernel")),
     ),

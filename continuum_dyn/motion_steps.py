@@ -11,6 +11,8 @@ from typing import Any
 
 import sympy as sp
 
+from statics import cable_steps
+from statics.cable_tension import along_cables
 from statics.recursion import (
     Reach,
     Step,
@@ -107,6 +109,7 @@ def motion_step(forces: SceneForces) -> Step:
     reach, carried, at = disk_in_motion(trace, forces)
     push, pushed = _far_acceleration(trace, forces, reach)
     at |= pushed
+    cables = along_cables(trace, forces.coupled, at, moves=True)
     name_forces(trace, forces, at)
     powers = {name: trace.let(f"added_{name}", booked(forces, "powers", name, at)) for name in POWERS}
     return Step(
@@ -115,17 +118,42 @@ def motion_step(forces: SceneForces) -> Step:
         ("q", "u", "w", "inputs", "segments", "disks", "chain"),
         trace,
         results={name: (0.0, symbol(name) + added) for name, added in powers.items()},
-        carried=carried | push,
+        carried=carried | push | cables,
     )
+
+
+def _in_motion(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], dict[Any, Any]]:
+    _, carried, at = disk_in_motion(trace, forces)
+    return carried, at
+
+
+def measuring_steps(forces: SceneForces) -> list[Step]:
+    """What a kernel in motion must measure first: nothing without coupled cables."""
+    if not forces.coupled:
+        return []
+    return [
+        cable_steps.lengths_step(forces, _in_motion, moves=True),
+        cable_steps.beyond_step(forces, moves=True),
+    ]
+
+
+def measuring_tangents(forces: SceneForces) -> list[Step]:
+    """Their derivatives along a change of coordinates and rates."""
+    if not forces.coupled:
+        return []
+    return [cable_steps.lengths_tangent_step(forces, _in_motion), cable_steps.beyond_tangent_step(forces)]
 
 
 def motion_tangent_step(forces: SceneForces) -> Step:
     """The derivative of ``motion_step`` along a change of coordinates and rates."""
     step = motion_step(forces)
     moving = [*forces.segment.coordinates, *forces.segment.rates, *map(symbol, step.carried)]
+    for cable in forces.coupled:
+        moving += [symbol(f"length_beyond_{cable.number}"), symbol(f"length_beyond_rate_{cable.number}")]
     trace, change = step.trace.tangent({s: symbol(f"{s}_change") for s in moving})
     changes = {
-        f"{name}_change": (0.0, trace.change_of(value, change)) for name, (_, value) in step.carried.items()
+        f"{name}_change": (trace.change_of(start, change), trace.change_of(value, change))
+        for name, (start, value) in step.carried.items()
     }
     return Step(
         "motion_tangent_step",
@@ -171,6 +199,7 @@ def observe_motion_step(forces: SceneForces) -> Step:
     """Outwards: poses and velocities of the disks, energies and powers."""
     trace = Trace()
     _, carried, at = disk_in_motion(trace, forces)
+    cables = along_cables(trace, forces.coupled, at, moves=True)
     accounts = {
         name: booked(forces, kind, name, at)
         for kind, names in (("energies", ENERGIES), ("powers", POWERS))
@@ -179,12 +208,12 @@ def observe_motion_step(forces: SceneForces) -> Step:
     return Step(
         "observe_step",
         "Outwards: poses and velocities of the disks, energies and powers.",
-        ("q", "u", "inputs", "segments", "disks", "pose", "velocity"),
+        ("q", "u", "inputs", "segments", "disks", "chain", "pose", "velocity"),
         trace,
         results={
             name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in accounts.items()
         },
-        carried=carried,
+        carried=carried | cables,
         stores={
             "pose": [at[coordinate] for coordinate in forces.disk.coordinates],
             "velocity": [at[rate] for rate in forces.disk.rates],

@@ -26,7 +26,7 @@ def operations(scene: Scene) -> int:
         forces = derive_statics(scene)
         outward, weights = recursion.pose_step(forces), recursion.STATIC
     inward = [recursion.residual_step(forces), recursion.eliminate_step(forces, weights)]
-    steps = [outward, *inward, recursion.substitute_step(forces)]
+    steps = [outward, *inward, recursion.substitute_step(forces, weights)]
     tree = ast.parse(compose("Counted.", forces, [], steps, ()))
     names = {step.name for step in steps}
     bodies = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name in names]

@@ -1,7 +1,7 @@
 """Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
 
 from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable, Each, Payload
-from statics.effects import Bending, Cables, DiskLoad, DiskLoads, Extension, Gravity
+from statics.effects import Bending, CableFriction, Cables, DiskLoad, DiskLoads, Extension, Gravity
 from statics.effects.cables import disk_loads
 from statics.equilibria import Equilibrium, StaticSolver, equilibrium, tension_ramp
 from statics.errors import ContinuumError, InputError
@@ -13,6 +13,7 @@ __all__ = [
     "Arm",
     "Bending",
     "Cable",
+    "CableFriction",
     "Cables",
     "ContinuumError",
     "DiskLoad",

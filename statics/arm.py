@@ -18,7 +18,7 @@ node is a disk's centre and the others are points of the core.
 from collections import Counter
 from dataclasses import field
 from math import pi
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -37,12 +37,23 @@ Subsegments = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
 class Cable:
     """A cable through a hole of every disk up to its anchor; ``anchor=None`` is the last disk.
 
-    ``hole_offset`` (m) is one number, or one for the base and each disk up to the anchor.
+    ``hole_offset`` (m) is one number, or one for the base and each disk up to the anchor. With a
+    ``cable_stiffness`` (N/m) the cable is driven by its length: its displacement, how much of it is drawn in
+    at the base, is given, and its tension follows. ``friction`` is the coefficient at its holes, and
+    ``slip_speed`` (m/s) that of the cable through a hole at which friction is three quarters of its most.
     """
 
     name: str
     hole_offset: float | Annotated[tuple[float, ...], Field(strict=False)]
     anchor: DiskNumber | None = None
+    cable_stiffness: Positive | None = None
+    friction: NonNegative = 0.0
+    slip_speed: Positive = 1e-5
+
+    @property
+    def driven_by_length(self) -> bool:
+        """Whether its displacement is given, not its tension."""
+        return self.cable_stiffness is not None
 
     @property
     def holes_differ(self) -> bool:
@@ -53,6 +64,18 @@ class Cable:
         """Offsets of its holes in the base and in each disk, shape (disks + 1,), m; the last one goes on."""
         given = np.atleast_1d(np.asarray(self.hole_offset, dtype=float))
         return np.pad(given, (0, max(0, disks + 1 - given.size)), mode="edge")
+
+
+class CableKind(NamedTuple):
+    """What makes a cable's equations: whether its length is given, not its tension, and whether it rubs."""
+
+    driven_by_length: bool = False
+    rubs: bool = False
+
+    @property
+    def coupled(self) -> bool:
+        """Whether its tension depends on all the segments that it passes."""
+        return self.driven_by_length or self.rubs
 
 
 PerDisk = Annotated[tuple[Positive, ...], Field(strict=False, min_length=1)]
@@ -246,7 +269,17 @@ class Arm:
             columns[f"near_hole_offset_{number}"] = np.repeat(holes[:-1], self.subsegments)
             passes = (is_disk == 0) & (disk <= (cable.anchor or self.disks))
             columns[f"cable_passes_{number}"] = passes.astype(float)
+            if cable.cable_stiffness is not None:
+                columns[f"cable_stiffness_{number}"] = np.full(self.segments, cable.cable_stiffness)
+                columns[f"cable_rest_length_{number}"] = np.full(self.segments, self.cable_rest_length(cable))
         return columns
+
+    def cable_rest_length(self, cable: Cable) -> float:
+        """Length of a cable from its hole in the base to its anchor, along the unloaded arm, m. Eq. 23."""
+        holes, spacing = cable.holes(self.disks), self.per_disk("disk_spacing")
+        half = self.per_disk("reference_curvature") * spacing / 2
+        along = np.sinc(half / pi) * (spacing - half * (holes[1:] + holes[:-1]))
+        return float(np.hypot(along, np.diff(holes) * np.cos(half))[: cable.anchor or self.disks].sum())
 
     def _along(self, name: str) -> np.ndarray:
         """A number of the core before each disk, for each segment, shape (segments,)."""

@@ -31,7 +31,18 @@ from statics.scene import Scene
 _HERE = Path(__file__).parent
 DERIVATION = tuple(
     _HERE / f"{stem}.py"
-    for stem in ("sigma", "segment", "trace", "virtual_work", "recursion", "compose", "codegen", "chain")
+    for stem in (
+        "sigma",
+        "segment",
+        "trace",
+        "virtual_work",
+        "cable_tension",
+        "recursion",
+        "cable_steps",
+        "compose",
+        "codegen",
+        "chain",
+    )
 )
 """The sources that every kernel is made from."""
 
@@ -74,7 +85,7 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
     effects = [effect.name for effect in scene.effects]
-    forms = (scene.cables, scene.driven_loads, scene.payloads, scene.spans, scene.holes_differ)
+    forms = (scene.cable_kinds, scene.driven_loads, scene.payloads, scene.spans, scene.holes_differ)
     structure = (recipe.kind, scene.coordinates, forms, effects)
     sources = [_digest(file, file.stat().st_mtime_ns) for file in recipe.sources]
     sources += [_effect_digest(effect) for effect in scene.effects]

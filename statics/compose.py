@@ -36,6 +36,9 @@ from numba import njit
 compiled = njit(cache=True, error_model="numpy", nogil=True)
 inlined = njit(inline="always", error_model="numpy")'''
 
+OPTIONAL = {"measure_cables", "measure_moving_cables", "measure_changes"}
+"""Sweeps that only scenes with coupled cables need."""
+
 
 @dataclass
 class _Body:
@@ -46,11 +49,19 @@ class _Body:
     carried: dict[str, tuple[float, Any]]
     needs: set[sp.Symbol]
 
+    @property
+    def start(self) -> list[Any]:
+        """What the step is handed before the first segment."""
+        return [value for value, _ in (self.step.results | self.carried).values()]
+
 
 def compose(
     title: str, forces: SceneForces, effects: Sequence[str], steps: Sequence[Step], sources: Iterable[Path]
 ) -> str:
-    """The whole module: constants, generated steps, and the functions of the source files."""
+    """The whole module: constants, generated steps, and the functions of the source files.
+
+    A call of one of ``OPTIONAL`` is left out where none of the sources defines it.
+    """
     bodies = _resolve(steps)
     columns = _columns(forces, steps, bodies)
     ladders: set[int] = set()
@@ -66,7 +77,7 @@ def compose(
         *(_compiled(_start(body, columns)) for body in bodies if _starts_from_inputs(body)),
         *(_inlined(ladder_source(order)) for order in sorted(ladders)),
         *map(_inlined, functions),
-        *(_functions_of(path) for path in sources),
+        *_functions_of(sources),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -87,7 +98,7 @@ def _resolve(steps: Sequence[Step]) -> list[_Body]:
     owner = _owners(steps)
     for step in reversed(steps):
         body = _prune(step, {s for s in wanted if owner.get(s) == step.name})
-        wanted |= body.needs
+        wanted |= body.needs | _symbols(body.start)
         bodies.insert(0, body)
     return bodies
 
@@ -140,7 +151,7 @@ def _columns(forces: SceneForces, steps: Sequence[Step], bodies: list[_Body]) ->
     for step in steps:
         for array, values in step.stores.items():
             text |= {symbol(f"{array}_{k}"): f"{array}[i, {k}]" for k in range(len(values))}
-    needed = set().union(*(body.needs for body in bodies)) - set(text)
+    needed = set().union(*(body.needs | _symbols(body.start) for body in bodies)) - set(text)
     chain = sorted((s for s in needed if s in owner), key=lambda s: (owner[s], s.name))
     text |= {s: f"chain[i, {k}]" for k, s in enumerate(chain)}
     of_disk = _symbols([forces.on_disk.force, *forces.on_disk.energies.values()])
@@ -161,8 +172,7 @@ def _constants(forces: SceneForces, bodies: list[_Body], columns: _Columns) -> s
     ]
     for body in bodies:
         if not _starts_from_inputs(body):
-            start = tuple(value for value, _ in (body.step.results | body.carried).values())
-            lines.append(f"{body.step.name.removesuffix('_step').upper()}_START = {start!r}")
+            lines.append(f"{body.step.name.removesuffix('_step').upper()}_START = {tuple(body.start)!r}")
         if "pivots" in body.step.stores:
             lines.append(f"PIVOT_COLUMNS = {len(body.step.stores['pivots'])}")
     return "\n".join(lines)
@@ -174,13 +184,15 @@ def _starts_from_inputs(body: _Body) -> bool:
 
 
 def _start(body: _Body, columns: _Columns) -> str:
-    """Source of the function that returns what the step is handed before the first segment."""
-    values = [value for value, _ in (body.step.results | body.carried).values()]
-    loads = sorted(_symbols(values), key=lambda s: _by_place(columns.text[s]))
-    lines = [f"{s} = {columns.text[s]}" for s in loads]
-    signature = f"def {body.step.name.removesuffix('_step')}_start(inputs):"
+    """Source of the function that returns what the step is handed before the first segment.
+
+    What belongs to segments is the first one's.
+    """
+    loads = sorted(_symbols(body.start), key=lambda s: _by_place(columns.text[s]))
+    lines = [f"{s} = {columns.text[s].replace('[i,', '[0,')}" for s in loads]
+    signature = f"def {body.step.name.removesuffix('_step')}_start(inputs, segments, chain):"
     doc = f'"""What {body.step.name} is handed before the first segment."""'
-    return "\n    ".join([signature, doc, *lines, f"return ({', '.join(map(_start_value, values))},)"])
+    return "\n    ".join([signature, doc, *lines, f"return ({', '.join(map(_start_value, body.start))},)"])
 
 
 def _start_value(value: Any) -> str:
@@ -255,6 +267,9 @@ class _Printer(PythonCodePrinter):
     def _print_AppliedUndef(self, call: Any) -> str:  # noqa: N802 (sympy's name)
         return f"{call.func.__name__}({', '.join(map(self._print, call.args))})"
 
+    def _print_Heaviside(self, expression: Any) -> str:  # noqa: N802
+        return f"(1.0 if {self._print(expression.args[0])} > 0.0 else 0.0)"
+
     def _print_Max(self, expression: Any) -> str:  # noqa: N802
         return f"max({', '.join(map(self._print, expression.args))})"
 
@@ -275,14 +290,27 @@ def _inlined(function: str) -> str:
     return f"@inlined\n{function}"
 
 
-def _functions_of(path: Path) -> str:
-    """Constants and functions of a source file, as they stand there."""
-    text = path.read_text(encoding="utf-8")
+def _functions_of(sources: Iterable[Path]) -> list[str]:
+    """Constants and functions of the source files, as they stand there but for sweeps that nothing needs."""
+    texts = [path.read_text(encoding="utf-8") for path in sources]
+    nodes = [(text, node) for text in texts for node in ast.parse(text).body]
+    defined = {node.name for _, node in nodes if isinstance(node, ast.FunctionDef)}
     parts = []
-    for node in ast.parse(text).body:
-        source = ast.get_source_segment(text, node) or ""
+    for text, node in nodes:
         if isinstance(node, ast.FunctionDef):
-            parts.append(_compiled(source))
+            parts.append(_compiled(_without_calls(text, node, OPTIONAL - defined)))
         elif isinstance(node, ast.Assign):
-            parts.append(source)
-    return "\n\n".join(parts)
+            parts.append(ast.get_source_segment(text, node) or "")
+    return parts
+
+
+def _without_calls(text: str, function: ast.FunctionDef, names: Iterable[str]) -> str:
+    """Source of a function without the statements that are calls of these names."""
+    lines, left_out = text.splitlines(), set[int]()
+    for node in ast.walk(function):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+            called = node.value.func
+            if isinstance(called, ast.Name) and called.id in names:
+                left_out |= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    own = range(function.lineno, (function.end_lineno or function.lineno) + 1)
+    return "\n".join(lines[number - 1] for number in own if number not in left_out)

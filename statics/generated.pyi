@@ -13,13 +13,19 @@ DISK_COLUMNS: tuple[str, ...]
 INPUTS: int
 CHAIN_COLUMNS: int
 PIVOT_COLUMNS: int
+BEYOND_START: Carried
 CLEARANCE_START: Carried
 RESIDUAL_START: Carried
 ELIMINATE_START: Carried
+LENGTHS_START: Carried
 SUBSTITUTE_START: Carried
 
+def lengths_step(
+    i: int, carried: Carried, q: np.ndarray, segments: np.ndarray, chain: np.ndarray
+) -> Carried: ...
+def beyond_step(i: int, carried: Carried, chain: np.ndarray) -> Carried: ...
 def clearance_step(i: int, carried: Carried, q: np.ndarray, segments: np.ndarray) -> Carried: ...
-def pose_start(inputs: np.ndarray) -> Carried: ...
+def pose_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def pose_step(
     i: int,
     carried: Carried,
@@ -29,7 +35,7 @@ def pose_step(
     disks: np.ndarray,
     chain: np.ndarray,
 ) -> Carried: ...
-def observe_start(inputs: np.ndarray) -> Carried: ...
+def observe_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def observe_step(
     i: int,
     carried: Carried,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from statics.cable_sweep import measure_cables
     from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
     from statics.generated import (
         CHAIN_COLUMNS,
@@ -40,7 +41,8 @@ def pose_sweep(
     q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, disks: np.ndarray, chain: np.ndarray
 ) -> tuple[float, float, float]:
     """Outwards, at rest: potential energy, the sum of its parts' sizes, and the clearance."""
-    carried = pose_start(inputs)
+    measure_cables(q, segments, chain)
+    carried = pose_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         carried = pose_step(i, carried, q, inputs, segments, disks, chain)
     return carried[0], carried[1], carried[2]
@@ -264,7 +266,7 @@ def examine(
     residual_sweep(disks, chain, residual)
     keeping_signs = (0.0, 0.0, 1.0, *ELIMINATE_START[3:])
     negative = eliminate_sweep(keeping_signs, segments, disks, chain, residual, descent, pivots)[0]
-    carried = observe_start(inputs)
+    carried = observe_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         carried = observe_step(i, carried, q, inputs, segments, disks, pose)
     return carried[0], carried[1], np.abs(residual).max(), int(negative)

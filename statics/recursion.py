@@ -21,6 +21,7 @@ from typing import Any
 
 import sympy as sp
 
+from statics.cable_tension import along_cables, drive_energy
 from statics.segment import CableSymbols, symbol
 from statics.trace import Trace
 from statics.virtual_work import SceneForces
@@ -201,6 +202,7 @@ def pose_step(forces: SceneForces) -> Step:
     carried = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
     ends, at = span_ends(trace, forces, carried, at_disk)
+    cables = along_cables(trace, forces.coupled, at, moves=False)
     name_forces(trace, forces, at)
     parts = forces.places.items()
     energies = [(name, placed(sp.Add(*part.energies.values()), at)) for name, part in parts]
@@ -208,17 +210,18 @@ def pose_step(forces: SceneForces) -> Step:
         "added_potential", sum(trace.let(f"{name}_potential", value) for name, value in energies)
     )
     smallest = _smallest(trace, forces, at)
+    drive = drive_energy(forces.coupled)
     return Step(
         "pose_step",
         "Outwards, at rest: reach, loads, potential energy, clearance.",
         ("q", "inputs", "segments", "disks", "chain"),
         trace,
         results={
-            "potential": (0.0, symbol("potential") + energy),
-            "potential_scale": (0.0, symbol("potential_scale") + sp.Abs(energy)),
+            "potential": (drive, symbol("potential") + energy),
+            "potential_scale": (sp.Abs(drive), symbol("potential_scale") + sp.Abs(energy)),
             "clearance": (1.0, smallest),
         },
-        carried=carried | pose | ends,
+        carried=carried | pose | ends | cables,
     )
 
 
@@ -233,6 +236,14 @@ def name_forces(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> None:
         trace.let(f"{place}_force", placed(part.force, at))
         for name in ("mass", "damping", "stiffness"):
             _let_matrix(trace, forces.conservative, f"{place}_{name}", placed(getattr(part, name), at))
+    for cable in forces.coupled:
+        trace.let(f"cable_pull_{cable.number}", placed(_pull(forces, cable), at))
+
+
+def _pull(forces: SceneForces, cable: CableSymbols) -> sp.Matrix:
+    """Derivative of a cable's length, where it passes, by the coordinates of what it joins."""
+    coordinates = (forces.span or forces.segment).coordinates
+    return sp.Matrix([cable.passes * cable.length.diff(q) for q in coordinates])
 
 
 def _let_matrix(trace: Trace, symmetric: bool, name: str, value: sp.Matrix) -> sp.Matrix:
@@ -336,25 +347,37 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
     """Inwards: eliminate one segment's coordinates from the chain's Newton system H dq = -residual.
 
     With A, C, B, D its blocks, by rows the segment's and the near disk's: V' = D - B A^-1 C. Where the system
-    is symmetric B is the transpose of C.
+    is symmetric B is the transpose of C. Beside poses the near disk hands on the tensions of coupled cables,
+    whose rows of V are the lengths beyond it.
     """
     trace = Trace()
     reach = reach_of(forces)
     symmetric = forces.conservative or weights.damping == weights.stiffness == 0
     dofs = len(forces.segment.coordinates)
+    coupled = coupled_by(forces, weights)
     S, X, here = reach.partials, reach.transition, _weighted(weights, symmetric, forces, "disk")
     if forces.on_span is not None:
         S, X, here = S.col_join(sp.zeros(3, dofs)), sp.diag(X, sp.eye(3)), sp.diag(here, sp.zeros(3))
         here += _weighted(weights, symmetric, forces, "span")
-    poses = range(S.shape[0])
+    size = S.shape[0]
+    S, X = S.col_join(sp.zeros(len(coupled), dofs)), sp.diag(X, sp.eye(len(coupled)))
+    here = sp.diag(here, sp.zeros(len(coupled)))
+    states = range(S.shape[0])
+    pulls = sp.zeros(dofs, len(states))
+    for state, cable in enumerate(coupled, start=size):
+        pull = _named(f"cable_pull_{cable.number}", _pull(forces, cable))
+        if forces.span is None:
+            pulls[:, state] = pull
+        else:
+            here[:size, state], here[state, :size] = pull, pull.T
     carried = sp.Matrix(*X.shape, lambda r, c: symbol(f"carried_{r}{c}"))
     if symmetric:
         carried = _mirrored(carried)
-    load = sp.Matrix([symbol(f"carried_load_{r}") for r in poses])
+    load = sp.Matrix([symbol(f"carried_load_{r}") for r in states])
     V = _let_matrix(trace, symmetric, "V", carried + here)
     VS, VX = trace.let("VS", V * S), trace.let("VX", V * X)
     A = S.T * VS + _weighted(weights, symmetric, forces, "segment")
-    B, C, D = X.T * VS, S.T * VX, X.T * VX
+    B, C, D = X.T * VS + pulls.T, S.T * VX + pulls, X.T * VX
     if weights.stiffness != 0:
         f = sp.Matrix([symbol("reaction_0"), symbol("reaction_1")])
         A += weights.stiffness * sp.Matrix(dofs, dofs, lambda a, b: f.dot(reach.by_qq[a][b]))
@@ -367,7 +390,7 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
     B = trace.let("B", B)
     C = B.T if symmetric else trace.let("C", C)
     b = trace.let("b", S.T * load - sp.Matrix([symbol(f"residual_{a}") for a in range(dofs)]))
-    inverse, results = _pivot_inverse(trace, symmetric, A, weights)
+    inverse, counted = _pivot_inverse(trace, symmetric, A, weights)
     gain = trace.let("gain", inverse * C)
     descent = trace.let("descent", inverse * b)
     next_load = X.T * load - B * descent
@@ -376,26 +399,96 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
         next_V, next_load = _merged(
             _let_matrix(trace, symmetric, "next_V", next_V), trace.let("next_load", next_load)
         )
-    entries = [(r, c) for r in poses for c in poses if c >= r or not symmetric]
+    inside = _slopes_inside(trace, forces, coupled)
+    for state, cable in enumerate(coupled, start=size):
+        next_V, next_load = _through_hole(
+            trace,
+            cable,
+            state,
+            _let_matrix(trace, symmetric, f"onto_{state}", next_V),
+            trace.let(f"onto_load_{state}", next_load),
+            weights,
+            forces,
+        )
+        if "negative_pivots" in counted:
+            start, count = counted["negative_pivots"]
+            counted["negative_pivots"] = start, count - sp.Heaviside(-symbol(f"hole_pivot_{cable.number}"))
+    entries = [(r, c) for r in states for c in states if c >= r or not symmetric]
     return Step(
         "eliminate_step",
         "Inwards: one segment's coordinates eliminated; the rest goes to its near disk.",
         ("segments", "disks", "chain", "residual", "descent", "pivots"),
         trace,
-        results={str(weight): (0.0, weight) for weight in weights.handed} | results,
+        results={str(weight): (0.0, weight) for weight in weights.handed} | counted,
         carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r, c in entries}
-        | {f"carried_load_{r}": (0.0, next_load[r]) for r in poses},
+        | {f"carried_load_{r}": (0.0, next_load[r]) for r in states}
+        | inside,
         stores={"descent": list(descent)}
         | ({} if weights.definite else {"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]}),
     )
 
 
+def coupled_by(forces: SceneForces, weights: Weights) -> list[CableSymbols]:
+    """The cables that couple all segments in such a matrix: none in that of the masses."""
+    return forces.coupled if weights.damping != 0 or weights.stiffness != 0 else []
+
+
+def _slopes_of(cable: CableSymbols) -> list[str]:
+    """Names of the derivatives that a cable's tension has at a hole."""
+    names = ["place_slope", "hole_factor", "rate_slope"] if cable.kind.rubs else ["place_slope"]
+    return [f"{name}_{cable.number}" for name in names]
+
+
+def _slopes_inside(trace: Trace, forces: SceneForces, coupled: list[CableSymbols]) -> dict[str, Any]:
+    """Carry the slopes from a span's end, where they are known, to its start, where the hole is."""
+    inside: dict[str, Any] = {}
+    for cable in coupled if forces.span is not None else []:
+        for name in _slopes_of(cable):
+            here, before = symbol(name), symbol(f"{name}_inside")
+            value = trace.let(f"{name}_there", cable.passes * here + (1 - cable.passes) * before)
+            inside[str(before)] = (0.0, value)
+    return inside
+
+
+def _through_hole(
+    trace: Trace,
+    cable: CableSymbols,
+    state: int,
+    V: sp.Matrix,
+    load: sp.Matrix,
+    weights: Weights,
+    forces: SceneForces,
+) -> tuple[sp.Matrix, sp.Matrix]:
+    """V and load on the tension before a hole, from those on the tension T beyond it.
+
+    With l = V_T x - load_T the change of the length beyond, dT = E dT0 + kappa l; E and kappa are the law's
+    derivatives. So dT = m (E dT0 + kappa (V_To o - load_T)), with o the other states and
+    m = 1 / (1 - kappa V_TT).
+    """
+    c, spans = cable.number, forces.span is not None
+    start = symbol("starts_span") if spans else sp.Integer(1)
+    place, *of_friction = (symbol(f"{name}_there" if spans else name) for name in _slopes_of(cable))
+    factor, rate = of_friction or (sp.Integer(1), sp.Integer(0))
+    kappa = trace.let(f"kappa_{c}", start * (weights.stiffness * place + weights.damping * rate))
+    factor = trace.let(f"tension_factor_{c}", start * factor + 1 - start)
+    own = V[state, state]
+    m = 1 / trace.let(f"hole_pivot_{c}", 1 - kappa * own)
+    onto = sp.eye(V.shape[0])
+    for k in range(V.shape[0]):
+        gain = m * (factor if k == state else kappa * V[state, k])
+        onto[state, k] = trace.name(f"hole_gain_{c}_{k}", gain)
+    push = trace.name(f"hole_push_{c}", -m * kappa * load[state])
+    return V * onto, load - V[:, state] * push
+
+
 def _merged(V: sp.Matrix, load: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     """Matrix and load on (near node, span's start) where, at the span's first segment, the two are one."""
+    rest = V.shape[0] - 6
     start, zero = symbol("starts_span"), sp.zeros(3)
-    both = sp.eye(3).row_join(sp.eye(3))
-    merged_V, merged_load = sp.diag(both * V * both.T, zero), (both * load).col_join(sp.zeros(3, 1))
-    return start * merged_V + (1 - start) * V, start * merged_load + (1 - start) * load
+    both = sp.diag(sp.eye(3).row_join(sp.eye(3)), sp.eye(rest))
+    apart = sp.diag(sp.eye(3).col_join(zero), sp.eye(rest))
+    onto = apart * both
+    return start * onto * V * onto.T + (1 - start) * V, start * onto * load + (1 - start) * load
 
 
 def _weighted(weights: Weights, symmetric: bool, forces: SceneForces, place: str) -> sp.Matrix:
@@ -442,8 +535,8 @@ def _plain_inverse(trace: Trace, A: sp.Matrix) -> sp.Matrix:
     return trace.symmetric("inverse", scaled) if A == A.T else trace.let("inverse", scaled)
 
 
-def substitute_step(forces: SceneForces) -> Step:
-    """Outwards: dq of one segment from the change of its near disk's pose."""
+def substitute_step(forces: SceneForces, weights: Weights) -> Step:
+    """Outwards: dq of one segment from the changes of its near disk's pose and of coupled tensions."""
     trace = Trace()
     reach = reach_of(forces)
     dofs = len(forces.segment.coordinates)
@@ -454,6 +547,7 @@ def substitute_step(forces: SceneForces) -> Step:
         at_start = trace.let("from_shift", from_start(near, before))
         ends = {str(name): (0.0, value) for name, value in zip(before, at_start, strict=True)}
         known = near.col_join(at_start)
+    known, tensions = _beyond_holes(trace, known, coupled_by(forces, weights))
     gain = sp.Matrix(dofs, len(known), lambda r, c: symbol(f"gain_{r}{c}"))
     change = trace.let("change", sp.Matrix([symbol(f"descent_{a}") for a in range(dofs)]) - gain * known)
     far = reach.transition * near + reach.partials * change
@@ -462,9 +556,25 @@ def substitute_step(forces: SceneForces) -> Step:
         "Outwards: the segment's part of the solution.",
         ("chain", "descent", "change"),
         trace,
-        carried={str(name): (0.0, value) for name, value in zip(near, far, strict=True)} | ends,
+        carried={str(name): (0.0, value) for name, value in zip(near, far, strict=True)} | ends | tensions,
         stores={"change": list(change)},
     )
+
+
+def _beyond_holes(
+    trace: Trace, known: sp.Matrix, coupled: list[CableSymbols]
+) -> tuple[sp.Matrix, dict[str, tuple[float, Any]]]:
+    """The changes of poses with those of the tensions beyond the near holes, and what is carried on."""
+    size = len(known)
+    states = [*known, *(symbol(f"shift_tension_{cable.number}") for cable in coupled)]
+    carried = {}
+    for state, cable in reversed(list(enumerate(coupled, start=size))):
+        c = cable.number
+        gains = [symbol(f"hole_gain_{c}_{k}") for k in range(len(states))]
+        value = sum(gain * change for gain, change in zip(gains, states, strict=True))
+        states[state] = trace.let(f"tension_beyond_{c}", value + symbol(f"hole_push_{c}"))
+        carried[f"shift_tension_{c}"] = (0.0, states[state])
+    return sp.Matrix(states), carried
 
 
 def _shifts(name: str) -> sp.Matrix:

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from statics.arm import Arm
+from statics.arm import Arm, CableKind
 from statics.effects import DiskLoads, Effect
 from statics.errors import InputError
 
@@ -30,6 +30,8 @@ class Scene:
                 raise InputError(f"effect '{name}' is given {count} times. Give it once.")
         for effect in self.effects:
             self._check(effect)
+        if self.has("cable_friction") and not self.has("cables"):
+            raise InputError("effect 'cable_friction' without cables in play. Add 'cables', or leave it out.")
 
     def _check(self, effect: Effect) -> None:
         for quantity in effect.arm_quantities:
@@ -59,6 +61,13 @@ class Scene:
         """Number of cables in play: none unless the scene has the effect ``cables``."""
         return len(self.arm.cables) if self.has("cables") else 0
 
+    @cached_property
+    def cable_kinds(self) -> tuple[CableKind, ...]:
+        """What makes the equations of each cable in play."""
+        rubs = self.has("cable_friction")
+        cables = self.arm.cables[: self.cables]
+        return tuple(CableKind(cable.driven_by_length, rubs and cable.friction > 0) for cable in cables)
+
     @property
     def driven_loads(self) -> int:
         """Number of the loads that change in time."""
@@ -66,8 +75,14 @@ class Scene:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the numbers that drive the scene: tensions of its cables, then factors of driven loads."""
-        tensions = (f"tension_{number}" for number in range(1, self.cables + 1))
+        """Names of the numbers that drive the scene: of its cables, then factors of driven loads.
+
+        A cable's is its tension, or its displacement where that is given.
+        """
+        tensions = (
+            f"{'cable_displacement' if kind.driven_by_length else 'tension'}_{number}"
+            for number, kind in enumerate(self.cable_kinds, start=1)
+        )
         factors = (f"load_factor_{number}" for number in range(1, self.driven_loads + 1))
         return (*tensions, *factors)
 
@@ -95,7 +110,7 @@ class Scene:
         known: dict[str, np.ndarray | float] = {}
         known.update(self.arm.segment_columns() if place == "segment" else self.arm.node_columns())
         for effect in self.effects:
-            if effect.place == place:
+            if (effect.place == "disk") == (place == "disk"):
                 known.update(effect.columns(self.arm))
         names = list(columns)
         table = np.empty((self.arm.segments, len(names)))

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import sympy as sp
 
+from statics.arm import CableKind
 from statics.errors import did_you_mean
 from statics.quantities import QUANTITIES
 from statics.sigma import Sigma
@@ -36,19 +37,31 @@ def _parameter(name: str) -> sp.Symbol:
 
 
 class CableSymbols(NamedTuple):
-    """One cable from hole to hole: its tension there, its length (Eq. 23), and how far the holes are apart.
+    """One cable from hole to hole: its length (Eq. 23), its tension, and how far the holes are apart.
 
-    ``gap`` is the length with a sign: negative once the holes have passed each other.
+    ``tension`` is that at the base and ``tension_lost`` what friction has taken of it on the way; both are
+    zero where the cable does not pass: beyond its anchor, and between disks. ``gap`` is the length with a
+    sign: negative once the holes have passed each other. ``angle`` is the cable's against the near disk's
+    normal, ``far_angle`` against the far disk's.
     """
 
+    number: int
+    kind: CableKind
+    passes: Any
     tension: Any
+    tension_lost: Any
     length: Any
     gap: Any
+    angle: Any
+    far_angle: Any
 
 
-def _tension(number: int) -> Any:
-    """Tension of a cable where it passes; beyond its anchor, and between disks, it is zero."""
-    return symbol(f"tension_{number}") * symbol(f"cable_passes_{number}")
+def _cable(number: int, kind: CableKind, length: Any, gap: Any, angle: Any, turn: Any) -> CableSymbols:
+    """A cable on a stretch whose far disk is turned by ``turn`` against the near one."""
+    passes = symbol(f"cable_passes_{number}")
+    lost = passes * symbol(f"tension_lost_{number}") if kind.rubs else sp.Integer(0)
+    tension = passes * symbol(f"tension_{number}")
+    return CableSymbols(number, kind, passes, tension, lost, length, gap, angle, angle - turn)
 
 
 def _hole_offsets(number: int, holes_differ: bool) -> tuple[sp.Symbol, sp.Symbol]:
@@ -60,12 +73,14 @@ def _hole_offsets(number: int, holes_differ: bool) -> tuple[sp.Symbol, sp.Symbol
 class SegmentSymbols:
     """One segment: coordinates, rates, geometry; any other glossary name is a parameter of it."""
 
-    def __init__(self, coordinates: tuple[str, ...], cables: int, holes_differ: bool = False) -> None:
+    def __init__(
+        self, coordinates: tuple[str, ...], cables: tuple[CableKind, ...], holes_differ: bool = False
+    ) -> None:
         self.holes_differ = holes_differ
         self.coordinates = [symbol(name) for name in coordinates]
         self.rates = [symbol(f"{name}_rate") for name in coordinates]
         self.accelerations = [symbol(f"{name}_acceleration") for name in coordinates]
-        self.number_of_cables = cables
+        self.cable_kinds = cables
         extends = "elongation" in coordinates
         self.bend_angle = symbol("bend_angle")
         self.elongation = symbol("elongation") if extends else sp.Integer(0)
@@ -91,16 +106,16 @@ class SegmentSymbols:
     @cached_property
     def cables(self) -> list[CableSymbols]:
         """Every cable of the scene, along a segment between neighbouring disks."""
-        return [self._cable(number) for number in range(1, self.number_of_cables + 1)]
+        return [self._cable(number, kind) for number, kind in enumerate(self.cable_kinds, start=1)]
 
-    def _cable(self, number: int) -> CableSymbols:
+    def _cable(self, number: int, kind: CableKind) -> CableSymbols:
         near, far = _hole_offsets(number, self.holes_differ)
         h, mean = self.half_angle, (near + far) / 2
         along = Sigma(0, h) * (self.length - self.bend_angle * mean)
         across = (far - near) * Sigma(-1, h)
-        return CableSymbols(
-            _tension(number), sp.sqrt(along**2 + across**2) if self.holes_differ else along, along
-        )
+        length = sp.sqrt(along**2 + across**2) if self.holes_differ else along
+        angle = h + sp.atan(across / along) if self.holes_differ else h
+        return _cable(number, kind, length, along, angle, self.bend_angle)
 
 
 class DrivenLoad(NamedTuple):
@@ -117,8 +132,8 @@ class SpanSymbols:
     Ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with ``span_``.
     """
 
-    def __init__(self, cables: int, holes_differ: bool = False) -> None:
-        self.number_of_cables = cables
+    def __init__(self, cables: tuple[CableKind, ...], holes_differ: bool = False) -> None:
+        self.cable_kinds = cables
         self.holes_differ = holes_differ
         self.coordinates = [symbol(f"{end}{name}") for end in ("", "span_") for name in ("x", "y", "theta")]
         self.rates = [
@@ -131,18 +146,22 @@ class SpanSymbols:
     @cached_property
     def cables(self) -> list[CableSymbols]:
         """Every cable of the scene, straight from hole to hole."""
-        return [self._cable(number) for number in range(1, self.number_of_cables + 1)]
+        return [self._cable(number, kind) for number, kind in enumerate(self.cable_kinds, start=1)]
 
-    def _cable(self, number: int) -> CableSymbols:
+    def _cable(self, number: int, kind: CableKind) -> CableSymbols:
         x, y, theta, span_x, span_y, span_theta = self.coordinates
         near, far = _hole_offsets(number, self.holes_differ)
         along_x = x - span_x - far * sp.sin(theta) + near * sp.sin(span_theta)
         along_y = y - span_y + far * sp.cos(theta) - near * sp.cos(span_theta)
         mean = (theta + span_theta) / 2
-        return CableSymbols(
-            _tension(number),
-            sp.sqrt(along_x**2 + along_y**2),
-            along_x * sp.cos(mean) + along_y * sp.sin(mean),
+        cosine, sine = sp.cos(span_theta), sp.sin(span_theta)
+        return _cable(
+            number,
+            kind,
+            length=sp.sqrt(along_x**2 + along_y**2),
+            gap=along_x * sp.cos(mean) + along_y * sp.sin(mean),
+            angle=sp.atan2(cosine * along_y - sine * along_x, cosine * along_x + sine * along_y),
+            turn=theta - span_theta,
         )
 
 

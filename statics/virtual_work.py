@@ -15,7 +15,7 @@ import sympy as sp
 from statics.effects import Effect, Pair
 from statics.errors import InputError
 from statics.scene import Scene
-from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols
+from statics.segment import CableSymbols, DiskSymbols, SegmentSymbols, SpanSymbols
 
 Groups = list[tuple[Effect, list[Pair]]]
 """Effects, each with its pairs at one place."""
@@ -55,6 +55,16 @@ class SceneForces:
     on_disk: Forces
     span: SpanSymbols | None = None
     on_span: Forces | None = None
+
+    @property
+    def cables(self) -> list[CableSymbols]:
+        """The cables from disk to disk."""
+        return (self.span or self.segment).cables
+
+    @property
+    def coupled(self) -> list[CableSymbols]:
+        """Those whose tension depends on all the segments that they pass."""
+        return [cable for cable in self.cables if cable.kind.coupled]
 
     @property
     def places(self) -> dict[str, Forces]:
@@ -106,7 +116,10 @@ def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
 
 def has_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
     """Whether every load that acts at rest has a potential."""
-    pairs = [pair for effect, group in groups if effect.acts_at_rest for pair in group]
+    at_rest = [(effect, group) for effect, group in groups if effect.acts_at_rest]
+    if any(effect.account == "dissipated_power" for effect, _ in at_rest):
+        return False
+    pairs = [pair for _, group in at_rest for pair in group]
     try:
         return all(potential(pair, coordinates) is not None for pair in pairs)
     except InputError:
@@ -129,9 +142,9 @@ def derive_statics(scene: Scene) -> SceneForces:
 
 def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
     """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
-    segment = SegmentSymbols(scene.coordinates, scene.cables, scene.holes_differ)
+    segment = SegmentSymbols(scene.coordinates, scene.cable_kinds, scene.holes_differ)
     disk = DiskSymbols(scene.payloads, scene.driven_loads)
-    span = SpanSymbols(scene.cables, scene.holes_differ) if scene.spans else None
+    span = SpanSymbols(scene.cable_kinds, scene.holes_differ) if scene.spans else None
     on_segment = collect(scene.effects, "segment", segment)
     on_disk = collect(scene.effects, "disk", disk)
     on_span = collect(scene.effects, "span", span or segment)

@@ -31,6 +31,7 @@ from statics import (
     codegen,
     statics_kernel,
 )
+from statics.arm import CableKind
 from statics.effects import Effect
 from statics.quantities import QUANTITIES
 from statics.segment import DiskSymbols, SegmentSymbols
@@ -101,9 +102,9 @@ def test_effect_left_out_leaves_no_trace_in_the_generated_source(name: str) -> N
 
 def symbols_of(effect: Effect) -> SegmentSymbols | DiskSymbols:
     """What the effect's pairs are written in; a span is one segment here."""
-    return (
-        DiskSymbols(payloads=1) if effect.place == "disk" else SegmentSymbols(("bend_angle", "elongation"), 1)
-    )
+    if effect.place == "disk":
+        return DiskSymbols(payloads=1)
+    return SegmentSymbols(("bend_angle", "elongation"), (CableKind(rubs=True),))
 
 
 def test_effects_that_are_there_leave_their_traces() -> None:

@@ -192,7 +192,7 @@ def in_closed_form(n: Any, x: Any) -> Any:
 
 def segment_jacobian(k: float, L: float, L0: float) -> np.ndarray:
     """d(x, y, theta)/d(k, L) of the program's segment, by the chain rule from phi = k L and e = L - L0."""
-    segment = SegmentSymbols(("bend_angle", "elongation"), 0)
+    segment = SegmentSymbols(("bend_angle", "elongation"), ())
     pose = sp.Matrix([*segment.displacement, segment.bend_angle])
     by_q = pose.jacobian(segment.coordinates).replace(Sigma, in_closed_form)
     values = {segment.bend_angle: k * L, segment.elongation: L - L0, symbol("rest_length"): L0}

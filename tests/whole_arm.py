@@ -72,8 +72,12 @@ class WholeArm:
         return [self.L0, self.EJ, self.EA, self.k0]
 
     def tension_along(self, tension: np.ndarray) -> np.ndarray:
-        """Tension of every cable from disk to disk, shape (cables, disks): zero beyond the anchor."""
-        return np.array(tension)[:, None] * (np.arange(1, self.n // self.step + 1) <= self.last[:, None])
+        """Tension of every cable from disk to disk, shape (cables, disks): zero beyond the anchor.
+
+        Takes one tension for each cable, or all of that shape.
+        """
+        along = np.array(tension).reshape(len(self.last), -1)
+        return along * (np.arange(1, self.n // self.step + 1) <= self.last[:, None])
 
 
 def whole_arm(scene: Scene) -> WholeArm:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
         velocity_start,
         velocity_step,
     )
+    from statics.cable_sweep import measure_cables
     from statics.chain import clearance_sweep, eliminate_sweep, substitute_sweep
     from statics.generated import RESIDUAL_START, residual_step
 
@@ -59,7 +60,8 @@ def momentum_sweeps(
 ) -> float:
     """dV/dq into ``residual``, dT/du into ``momentum``, dT/dq into ``slope``; returns the power in."""
     _, segments, disks = arm
-    outward = velocity_start(inputs)
+    measure_cables(q, segments, chain)
+    outward = velocity_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         outward = velocity_step(i, outward, q, u, inputs, segments, disks, chain)
     reaction, beyond = RESIDUAL_START, MOMENTUM_START

@@ -5,6 +5,7 @@ no equation and in no generated line.
 """
 
 from statics.effects.bending import Bending
+from statics.effects.cable_friction import CableFriction
 from statics.effects.cables import Cables
 from statics.effects.disk_loads import DiskLoad, DiskLoads
 from statics.effects.effect import Effect, Pair
@@ -12,12 +13,13 @@ from statics.effects.extension import Extension
 from statics.effects.gravity import Gravity
 
 STATIC_EFFECTS: dict[str, type[Effect]] = {
-    effect.name: effect for effect in (Bending, Extension, Gravity, Cables, DiskLoads)
+    effect.name: effect for effect in (Bending, Extension, Gravity, Cables, CableFriction, DiskLoads)
 }
 
 __all__ = [
     "STATIC_EFFECTS",
     "Bending",
+    "CableFriction",
     "Cables",
     "DiskLoad",
     "DiskLoads",

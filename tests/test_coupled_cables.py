@@ -1,0 +1,169 @@
+"""Cables that rub or are driven by length: the chain's tensions, forces and matrices against the whole arm's.
+
+The oracle places every hole, measures lengths and turning angles there, and applies the two laws stretch by
+stretch; it shares nothing with the program but the numbers of a scene. Kernels run as plain Python.
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import whole_arm
+from whole_arm import difference_matrix, directional, gradient, random_state, relative_error
+
+from continuum_dyn import implicit_kernel, motion_kernel
+from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
+from statics import Arm, Bending, Cable, CableFriction, Cables, Extension, Gravity, Scene, codegen
+from statics import statics_kernel
+from statics.arm import CableKind
+
+TENSION, RUBS = CableKind(), CableKind(rubs=True)
+LENGTH, BOTH = CableKind(driven_by_length=True), CableKind(driven_by_length=True, rubs=True)
+KINDS = [(RUBS,), (LENGTH,), (BOTH,), (BOTH, TENSION, RUBS)]
+STIFFNESS, SLIP_SPEED = 300.0, 0.02
+DRIVE = {TENSION: 0.7, RUBS: 1.3, LENGTH: 0.02, BOTH: 0.025}
+"""Tensions (N), or displacements (m) that leave no cable slack in any of the states below."""
+
+
+def scene_of(kinds: tuple[CableKind, ...], subsegments: int = 1, *, moves: bool = False) -> Scene:
+    """Three disks, and cables on either side whose holes differ; the last cable ends at the second disk."""
+    cables = tuple(
+        Cable(
+            f"cable_{number}",
+            (0.009, 0.008, 0.006, 0.006)[: 3 + (number < 2)] if number % 2 == 0 else -0.006,
+            anchor=2 if number == 2 else None,
+            cable_stiffness=STIFFNESS if kind.driven_by_length else None,
+            friction=0.2 + 0.1 * number if kind.rubs else 0.0,
+            slip_speed=SLIP_SPEED,
+        )
+        for number, kind in enumerate(kinds)
+    )
+    arm = Arm.preset(
+        "rone2012",
+        disks=3,
+        subsegments=subsegments,
+        core_density=7800.0 if subsegments > 1 else None,
+        reference_curvature=3.0,
+        cables=cables,
+    )
+    friction = [CableFriction()] if any(kind.rubs for kind in kinds) else []
+    motion = [Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)] if moves else []
+    return Scene(arm, [Bending(), Extension(), Gravity(), Cables(), *friction, *motion])
+
+
+class Oracle:
+    """Tensions of all cables on all stretches, shape (cables, disks), from the places of the holes."""
+
+    def __init__(self, scene: Scene, kinds: tuple[CableKind, ...]) -> None:
+        self.arm, self.kinds = whole_arm.whole_arm(scene), kinds
+        self.cables = scene.arm.cables
+        self.drive = np.array([DRIVE[kind] for kind in kinds])
+        unloaded = np.zeros((self.arm.n, len(scene.coordinates)))
+        unloaded[:, 0] = self.arm.k0 * self.arm.L0
+        self.rest = self.lengths(unloaded).sum(axis=1)
+
+    def lengths(self, q: np.ndarray) -> np.ndarray:
+        """Hole-to-hole lengths up to the anchors, shape (cables, disks)."""
+        return self.arm.tension_along(whole_arm.cable_lengths(self.arm, q))
+
+    def beyond(self, q: np.ndarray) -> np.ndarray:
+        """Lengths beyond the near hole of each stretch."""
+        return np.cumsum(self.lengths(q)[:, ::-1], axis=1)[:, ::-1]
+
+    def turns(self, q: np.ndarray) -> np.ndarray:
+        """Angle by which each near hole turns the cable; the drive pulls along the base's normal."""
+        x, y, theta = (np.concatenate([[0], values])[:: self.arm.step] for values in whole_arm.poses(self.arm, q))
+        turns = np.empty_like(self.arm.r_h[:, 1:])
+        for c, r_h in enumerate(self.arm.r_h):
+            way = np.diff((x - r_h * np.sin(theta)) + 1j * (y + r_h * np.cos(theta)))
+            turns[c] = np.angle(way / np.concatenate([[1.0], way[:-1]]))
+        return turns
+
+    def drives(self, q: np.ndarray) -> np.ndarray:
+        """Tension of each cable at the base."""
+        stretch = self.beyond(q)[:, 0] - self.rest + self.drive
+        by_length = np.array([kind.driven_by_length for kind in self.kinds])
+        return np.where(by_length, STIFFNESS * np.where(np.real(stretch) > 0, stretch, 0), self.drive)
+
+    def tensions(self, q: np.ndarray, slip: np.ndarray, turns: np.ndarray) -> np.ndarray:
+        """By the capstan law, for slips in units of what friction wants."""
+        friction = np.array([cable.friction for cable in self.cables])[:, None]
+        fall = np.cumsum(-friction * np.abs(turns) * np.tanh(slip), axis=1)
+        return self.drives(q)[:, None] * np.exp(fall)
+
+    def in_motion(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        return self.tensions(q, -directional(self.beyond, q, u) / SLIP_SPEED, self.turns(q))
+
+
+def kernel_of(scene: Scene, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
+    kernel: Any = codegen.load_interpreted(scene, recipe)
+    return kernel, scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)
+
+
+@pytest.mark.parametrize("subsegments", [1, 2])
+@pytest.mark.parametrize("kinds", KINDS)
+def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
+    kinds: tuple[CableKind, ...], subsegments: int
+) -> None:
+    scene = scene_of(kinds, subsegments, moves=True)
+    oracle, (kernel, segments, disks) = Oracle(scene, kinds), kernel_of(scene, motion_kernel.RECIPE)
+    pieces = np.array([[0.0, value, 0.0, 0.0, 0.0] for value in oracle.drive])
+    for seed in range(3):
+        q, u = random_state(scene, seed, bend=0.7)
+        y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
+        rate = kernel.rate(0.0, y, pieces, segments, disks, q.shape[1])
+        expected = whole_arm.accelerations(oracle.arm, q, u, oracle.in_motion(q, u))
+        assert relative_error(rate[q.size : 2 * q.size].reshape(q.shape), expected) < 1e-11
+        drives, lengths = oracle.drives(q), oracle.lengths
+        pulled_in = -drives @ directional(lengths, q, u).sum(axis=1)
+        lost = np.sum((drives[:, None] - oracle.in_motion(q, u)) * -directional(lengths, q, u))
+        core = rate[-1] - lost
+        assert rate[-2] == pytest.approx(pulled_in, rel=1e-11)
+        assert lost >= 0.0 and core > 0.0
+
+
+@pytest.mark.parametrize("kinds", KINDS)
+def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...]) -> None:
+    scene = scene_of(kinds, moves=True)
+    kernel, segments, disks = kernel_of(scene, motion_kernel.RECIPE)
+    pieces = np.array([[0.0, DRIVE[kind], 0.0, 0.0, 0.0] for kind in kinds])
+    q, u = random_state(scene, seed=1, bend=0.7)
+    numbers = pieces, segments, disks, q.shape[1]
+    y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
+    steps = np.concatenate([np.tile([1e-3, 1e-5], len(q)), np.tile([1e-2, 1e-4], len(q)), [1.0, 1.0]])
+    expected = difference_matrix(lambda y: kernel.rate(0.0, y, *numbers), y, steps)
+    found = kernel.rate_jacobian(0.0, y, *numbers)
+    assert np.abs(found - expected).max(axis=1) == pytest.approx(0.0, abs=1e-6 * np.abs(expected).max())
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-8 * np.abs(expected).max())
+
+
+class Statics:
+    """The static kernel of a scene at one state."""
+
+    def __init__(self, scene: Scene, q: np.ndarray, drive: np.ndarray, before: np.ndarray | None) -> None:
+        self.kernel, self.segments, self.disks = kernel_of(scene, statics_kernel.RECIPE)
+        for number, lengths in enumerate([] if before is None else before, start=1):
+            name = f"length_before_{number}"
+            if name in self.kernel.SEGMENT_COLUMNS:
+                column = self.kernel.SEGMENT_COLUMNS.index(name)
+                self.segments[:, column] = np.repeat(lengths, scene.arm.subsegments)
+        self.q, self.drive = q, drive
+
+    def residual(self, q: np.ndarray) -> np.ndarray:
+        self.chain, residual = np.empty((len(q), self.kernel.CHAIN_COLUMNS)), np.empty_like(q)
+        self.potential = self.kernel.pose_sweep(q, self.drive, self.segments, self.disks, self.chain)[0]
+        self.kernel.residual_sweep(self.disks, self.chain, residual)
+        return residual
+
+    def newton_step(self) -> tuple[np.ndarray, int]:
+        """Keeping the pivots' signs, and how many are negative."""
+        residual, descent, change = self.residual(self.q), np.empty_like(self.q), np.empty_like(self.q)
+        pivots = np.empty((len(self.q), self.kernel.PIVOT_COLUMNS))
+        start = self.kernel.ELIMINATE_START
+        if "pivot_inverse_2" in dir(self.kernel) and len(start) and "keep" in self.kernel.__dict__:
+            start = start
+        start = (0.0, 0.0, 1.0, *start[3:]) if self.conservative else start
+        arrays = self.segments, self.disks, self.chain, residual, descent, pivots
+        negative = self.kernel.eliminate_sweep(start, *arrays)[0]
+        self.kernel.substitute_sweep(self.chain, descent, change)
+        return change, int(negative)
