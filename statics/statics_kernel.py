@@ -5,8 +5,9 @@ from pathlib import Path
 from statics.codegen import DERIVATION, Recipe
 from statics.scene import Scene
 
-_NEWTON = Path(__file__).with_name("newton.py")
-_CHAIN = Path(__file__).with_name("chain.py")
+_HERE = Path(__file__).parent
+_SHARED = (_HERE / "chain.py", _HERE / "search.py")
+_BY_ENERGY, _BY_RESIDUAL = _HERE / "newton.py", _HERE / "balance.py"
 
 
 def write(scene: Scene) -> str:
@@ -24,7 +25,8 @@ def write(scene: Scene) -> str:
         recursion.observe_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    return compose("Statics of a planar cable-driven arm.", forces, names, steps, (_CHAIN, _NEWTON))
+    sources = (*_SHARED, _BY_ENERGY if forces.conservative else _BY_RESIDUAL)
+    return compose("Statics of a planar cable-driven arm.", forces, names, steps, sources)
 
 
-RECIPE = Recipe("statics", write, (*DERIVATION, _NEWTON, Path(__file__)))
+RECIPE = Recipe("statics", write, (*DERIVATION, *_SHARED, _BY_ENERGY, _BY_RESIDUAL, Path(__file__)))

@@ -88,29 +88,37 @@ def partial_displacement(displacement: Any, coordinate: sp.Symbol) -> Any:
     return sp.diff(displacement, coordinate)
 
 
+def _is_constant(load: Any, coordinates: Sequence[sp.Symbol]) -> bool:
+    parts = load if isinstance(load, Sequence) else (load,)
+    return not any(sp.sympify(part).has(*coordinates) for part in parts)
+
+
+def has_potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> bool:
+    """Whether ``potential`` knows the pair's energy: its load is constant, or linear in its displacement."""
+    load, displacement = pair
+    if _is_constant(load, coordinates):
+        return True
+    return displacement in coordinates and _is_constant(sp.diff(load, displacement), coordinates)
+
+
 def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
     """Energy V with P = -dV/dr: of a constant load, or of one linear in its own displacement.
 
     A linear load's energy is zero where the load is. Raises ``InputError`` for any other load.
     """
     load, displacement = pair
-    parts = load if isinstance(load, Sequence) else (load,)
-    if not any(sp.sympify(part).has(*coordinates) for part in parts):
+    if not has_potential(pair, coordinates):
+        raise InputError(f"no potential is known for the load {load} along {displacement}")
+    if _is_constant(load, coordinates):
         return -dot(load, displacement)
-    if displacement in coordinates:
-        stiffness = -sp.diff(load, displacement)
-        if not stiffness.has(*coordinates):
-            return stiffness * sp.expand(load / stiffness) ** 2 / 2
-    raise InputError(f"no potential is known for the load {load} along {displacement}")
+    stiffness = -sp.diff(load, displacement)
+    return stiffness * sp.expand(load / stiffness) ** 2 / 2
 
 
-def has_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
+def have_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
     """Whether every load that acts at rest has a potential."""
     pairs = [pair for effect, group in groups if effect.acts_at_rest for pair in group]
-    try:
-        return all(potential(pair, coordinates) is not None for pair in pairs)
-    except InputError:
-        return False
+    return all(has_potential(pair, coordinates) for pair in pairs)
 
 
 def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
@@ -123,7 +131,10 @@ def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
 
 
 def derive_statics(scene: Scene) -> SceneForces:
-    """Forces of the effects that act at rest, with their potentials, those of the loads included."""
+    """Forces of the effects that act at rest, with their potentials, those of the loads included.
+
+    What has no potential, as a follower load, has no part in the energies.
+    """
     return derive(scene.at_rest, _at_rest)
 
 
@@ -139,7 +150,7 @@ def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneFor
         on_segment, on_span = on_segment + on_span, []
     places = [(on_segment, segment), (on_disk, disk), (on_span, span or segment)]
     return SceneForces(
-        all(has_potentials(groups, at.coordinates) for groups, at in places),
+        all(have_potentials(groups, at.coordinates) for groups, at in places),
         scene.inputs,
         segment,
         disk,
@@ -155,7 +166,8 @@ def _at_rest(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> 
     pairs = [pair for _, group in groups for pair in group]
     force = generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)
     none = sp.zeros(len(coordinates))
-    energies = by_account(groups, lambda pair: potential(pair, coordinates))
+    with_potential = [group for group in groups if have_potentials([group], coordinates)]
+    energies = by_account(with_potential, lambda pair: potential(pair, coordinates))
     return Forces(force, none, none, -force.jacobian(coordinates), energies)
 
 
