@@ -85,19 +85,29 @@ def partial_displacement(displacement: Any, coordinate: sp.Symbol) -> Any:
 
 
 def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
-    """Energy V with P = -dV/dr: of a constant load, or of one linear in its own displacement.
+    """Energy V with P = -dV/dr: of a constant load, or of one that its own displacement alone changes.
 
-    A linear load's energy is zero where the load is. Raises ``InputError`` for any other load.
+    A linear load's energy is zero where the load is, any other's where the displacement is. Raises
+    ``InputError`` for a load that something else changes.
     """
     load, displacement = pair
     parts = load if isinstance(load, Sequence) else (load,)
     if not any(sp.sympify(part).has(*coordinates) for part in parts):
         return -dot(load, displacement)
-    if displacement in coordinates:
-        stiffness = -sp.diff(load, displacement)
-        if not stiffness.has(*coordinates):
-            return stiffness * sp.expand(load / stiffness) ** 2 / 2
+    if not isinstance(displacement, Sequence):
+        r = sp.Dummy("r", real=True)
+        along = sp.sympify(load).subs(displacement, r)
+        if not along.has(*coordinates):
+            return _stored(along, r).subs(r, displacement)
     raise InputError(f"no potential is known for the load {load} along {displacement}")
+
+
+def _stored(load: Any, r: sp.Dummy) -> Any:
+    """Energy of a load that r changes."""
+    stiffness = -sp.diff(load, r)
+    if not stiffness.has(r):
+        return stiffness * sp.expand(load / stiffness) ** 2 / 2
+    return -sp.integrate(load, (r, 0, r))
 
 
 def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
