@@ -88,37 +88,48 @@ def partial_displacement(displacement: Any, coordinate: sp.Symbol) -> Any:
     return sp.diff(displacement, coordinate)
 
 
+_OWN = sp.Dummy("r", real=True)
+
+
 def _is_constant(load: Any, coordinates: Sequence[sp.Symbol]) -> bool:
     parts = load if isinstance(load, Sequence) else (load,)
     return not any(sp.sympify(part).has(*coordinates) for part in parts)
 
 
 def has_potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> bool:
-    """Whether ``potential`` knows the pair's energy: its load is constant, or linear in its displacement."""
+    """Whether the load is constant, or its own displacement alone changes it; a follower load has none."""
     load, displacement = pair
-    if _is_constant(load, coordinates):
-        return True
-    return displacement in coordinates and _is_constant(sp.diff(load, displacement), coordinates)
-
-
-def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
-    """Energy V with P = -dV/dr: of a constant load, or of one linear in its own displacement.
-
-    A linear load's energy is zero where the load is. Raises ``InputError`` for any other load.
-    """
-    load, displacement = pair
-    if not has_potential(pair, coordinates):
-        raise InputError(f"no potential is known for the load {load} along {displacement}")
-    if _is_constant(load, coordinates):
-        return -dot(load, displacement)
-    stiffness = -sp.diff(load, displacement)
-    return stiffness * sp.expand(load / stiffness) ** 2 / 2
+    if _is_constant(load, coordinates) or isinstance(displacement, Sequence):
+        return _is_constant(load, coordinates)
+    return _is_constant(sp.sympify(load).subs(displacement, _OWN), coordinates)
 
 
 def have_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
     """Whether every load that acts at rest has a potential."""
     pairs = [pair for effect, group in groups if effect.acts_at_rest for pair in group]
     return all(has_potential(pair, coordinates) for pair in pairs)
+
+
+def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
+    """Energy V with P = -dV/dr: of a constant load, or of one that its own displacement alone changes.
+
+    A linear load's energy is zero where the load is, any other's where the displacement is. Raises
+    ``InputError`` for a load that something else changes.
+    """
+    load, displacement = pair
+    if not has_potential(pair, coordinates):
+        raise InputError(f"no potential is known for the load {load} along {displacement}")
+    if _is_constant(load, coordinates):
+        return -dot(load, displacement)
+    return _stored(sp.sympify(load).subs(displacement, _OWN)).subs(_OWN, displacement)
+
+
+def _stored(load: Any) -> Any:
+    """Energy of a load that ``_OWN`` changes."""
+    stiffness = -sp.diff(load, _OWN)
+    if not stiffness.has(_OWN):
+        return stiffness * sp.expand(load / stiffness) ** 2 / 2
+    return -sp.integrate(load, (_OWN, 0, _OWN))
 
 
 def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
