@@ -12,6 +12,7 @@ from continuum_dyn.study import Scenario, dissipated_by
 from statics import codegen
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
+from statics.outcome import Outcome
 
 MOST_COORDINATES = 400
 """Most coordinates of an arm whose modes are asked for: they are all found at once, in some seconds."""
@@ -114,7 +115,7 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
     dynamics = Dynamics(scenario.scene)
     _check(dynamics)
     rest = StaticSolver(scenario.scene).solve(scenario.initial_tension)
-    if not rest.stable:
+    if rest.outcome is not Outcome.COMPLETED:
         raise InputError(f"modes are those about a stable equilibrium; found: {rest.outcome}.")
     found = modes(dynamics, dynamics.state(rest.coordinates), _still(scenario.initial_tension))
     return RestModes(scenario, rest, found)
@@ -130,7 +131,7 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
         without = scenario.without(effect)
         with np.errstate(all="ignore"):
             rest = StaticSolver(without.scene, codegen.load_interpreted).solve(without.initial_tension)
-            if not rest.stable:
+            if rest.outcome is not Outcome.COMPLETED:
                 return None
             dynamics = Dynamics(without.scene, codegen.load_interpreted)
             return rates(dynamics, dynamics.state(rest.coordinates), _still(without.initial_tension))

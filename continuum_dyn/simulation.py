@@ -151,7 +151,7 @@ def _statics(scenario: Scenario) -> Run:
     started = time.perf_counter()
     points = solver.ramp(tensions)
     solve_time = time.perf_counter() - started
-    failed = next((point for point in points if not point.stable), None)
+    failed = next((point for point in points if point.outcome is not Outcome.COMPLETED), None)
     outcome, message = (Outcome.COMPLETED, "") if failed is None else (failed.outcome, _why(failed))
     return Run(scenario, outcome, message, points, solve_time=solve_time)
 
@@ -265,7 +265,7 @@ def _compared(run: Run, study: MotionStudy, end: Equilibrium) -> Run:
     gap = tip_gap(run.trajectory.tip, end.tip) if end.found else None
     if not isinstance(study, StepResponseStudy):
         return replace(run, static_gap=gap)
-    if gap is None or not end.stable:
+    if gap is None or end.outcome is not Outcome.COMPLETED:
         return replace(run, static_gap=gap, outcome=end.outcome, message=_why(end))
     speed = float(run.trajectory.tip_speed[-1])
     verdict = Outcome.SETTLED if settled(gap, speed, run.scenario.settled_within) else Outcome.NOT_SETTLED

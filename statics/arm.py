@@ -325,9 +325,15 @@ class Arm:
         spread[self.disk_nodes] = values
         return spread
 
+    def on_nodes(self, of_segments: np.ndarray) -> np.ndarray:
+        """What is spread along segments, half of each one's on either end, shape (segments,).
+
+        The base takes the other half of the first.
+        """
+        return (of_segments + np.append(of_segments[1:], 0.0)) / 2
+
     def _core_on_nodes(self) -> np.ndarray:
-        """The core's own mass, half of a segment's on either end, shape (segments,), kg."""
+        """The core's own mass, shape (segments,), kg."""
         if self.core_density is None:
             return np.zeros(self.segments)
-        mass = self.core_density * self._along("area") * self.rest_lengths
-        return (mass + np.append(mass[1:], 0.0)) / 2
+        return self.on_nodes(self.core_density * self._along("area") * self.rest_lengths)

@@ -1,7 +1,7 @@
 """Equilibria of a scene, and ramps of them.
 
 What is returned as an equilibrium is one: residual at rounding level. Where there is none, or where it is
-not stable, the outcome says so.
+not stable, the outcome says so. Under loads without a potential statics alone cannot tell whether it is.
 """
 
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from statics import codegen, newton
+from statics import codegen, search
 from statics.arm import Arm
 from statics.outcome import Outcome
 from statics.scene import Scene
@@ -18,10 +18,11 @@ from statics.statics_kernel import RECIPE
 MAX_ITERATIONS = 200
 
 _OUTCOMES = {
-    newton.STABLE: Outcome.COMPLETED,
-    newton.UNSTABLE: Outcome.UNSTABLE_EQUILIBRIUM,
-    newton.LIMIT: Outcome.GEOMETRY_LIMIT,
-    newton.NOT_FOUND: Outcome.NO_EQUILIBRIUM,
+    search.STABLE: Outcome.COMPLETED,
+    search.BALANCED: Outcome.COMPLETED,
+    search.UNSTABLE: Outcome.UNSTABLE_EQUILIBRIUM,
+    search.LIMIT: Outcome.GEOMETRY_LIMIT,
+    search.NOT_FOUND: Outcome.NO_EQUILIBRIUM,
 }
 
 
@@ -31,7 +32,8 @@ class Equilibrium:
 
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
     loads,) or None; ``elongation`` is None in a scene without extension; SI units. ``residual`` is the
-    largest unbalanced generalized force, N or N m.
+    largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where it is not known:
+    under loads without a potential, until the modes of small motion have been asked.
     """
 
     outcome: Outcome
@@ -46,7 +48,7 @@ class Equilibrium:
     disk_theta: np.ndarray
     elastic_energy: float
     gravity_energy: float
-    unstable_directions: int
+    unstable_directions: int | None
     iterations: int
     residual: float
 
@@ -56,8 +58,10 @@ class Equilibrium:
         return self.outcome in (Outcome.COMPLETED, Outcome.UNSTABLE_EQUILIBRIUM)
 
     @property
-    def stable(self) -> bool:
-        """Whether every small disturbance raises the energy."""
+    def stable(self) -> bool | None:
+        """Whether every small disturbance raises the energy or, by the modes, none grows; None if unknown."""
+        if self.found and self.unstable_directions is None:
+            return None
         return self.outcome is Outcome.COMPLETED
 
     @property
@@ -112,7 +116,7 @@ class StaticSolver:
             disk_theta=disk_theta,
             elastic_energy=elastic,
             gravity_energy=gravity,
-            unstable_directions=negative,
+            unstable_directions=None if negative == search.UNKNOWN else negative,
             iterations=iterations,
             residual=residual,
         )
@@ -141,8 +145,8 @@ def equilibrium(scene: Scene, tension: object = None, start: Equilibrium | None 
     """The arm at rest under these tensions, shape (cables,), N; a number will do for a single cable.
 
     Newton's method from ``start``, or from the straight arm; effects that exist in motion only play no
-    part. Look at ``outcome``: a stable equilibrium is ``completed``. Raises ``InputError`` for tensions
-    that do not fit. Rone 2012, Eq. 5.
+    part. Look at ``outcome``: an equilibrium that is not known to be unstable is ``completed``. Raises
+    ``InputError`` for tensions that do not fit. Rone 2012, Eq. 5.
     """
     values = scene.check_tension(tension)
     return StaticSolver(scene).solve(values, None if start is None else start.coordinates)

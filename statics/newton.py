@@ -17,20 +17,22 @@ if TYPE_CHECKING:
         CHAIN_COLUMNS,
         ELIMINATE_START,
         PIVOT_COLUMNS,
-        observe_start,
-        observe_step,
         pose_start,
         pose_step,
     )
+    from statics.search import (
+        AT_LIMIT,
+        AT_REST,
+        LARGEST_TURN,
+        LIMIT,
+        NOT_FOUND,
+        STABLE,
+        UNSTABLE,
+        advance,
+        measure,
+        observe,
+    )
 
-STABLE, UNSTABLE, LIMIT, NOT_FOUND = 0, 1, 2, 3
-
-AT_REST = 1e-8
-"""A Newton step below this (rad, or elongation over L0) is the last one: its square is below rounding."""
-AT_LIMIT = 1e-6
-"""Clearance (over L0) at which an arm that still descends has reached its geometric limit."""
-LARGEST_TURN = 1.0
-"""Most that one step may turn any disk, rad."""
 SINGULAR, TINY = 1e-9, 1e-30
 """Pivots below this part of the torque scale, or below this at all, count as that large."""
 ROUNDING = 1e-11
@@ -90,18 +92,6 @@ def pivot_inverse_2(
     )
 
 
-def measure(change: np.ndarray, rest_length: float) -> tuple[float, float]:
-    """Largest single change (rad, or elongation over L0), and largest change of any disk's angle."""
-    single, angle, turned = 0.0, 0.0, 0.0
-    for i in range(change.shape[0]):
-        angle += change[i, 0]
-        turned = max(turned, abs(angle))
-        single = max(single, abs(change[i, 0]))
-        if change.shape[1] == 2:
-            single = max(single, abs(change[i, 1]) / rest_length)
-    return single, max(single, turned)
-
-
 def inner(first: np.ndarray, second: np.ndarray) -> float:
     """Scalar product of two arrays of one row for each segment."""
     total = 0.0
@@ -109,13 +99,6 @@ def inner(first: np.ndarray, second: np.ndarray) -> float:
         for k in range(first.shape[1]):
             total += first[i, k] * second[i, k]
     return total
-
-
-def advance(q: np.ndarray, factor: float, change: np.ndarray, trial: np.ndarray) -> None:
-    """Set trial to q + factor * change."""
-    for i in range(q.shape[0]):
-        for k in range(q.shape[1]):
-            trial[i, k] = q[i, k] + factor * change[i, k]
 
 
 def saddle_direction(
@@ -266,7 +249,5 @@ def examine(
     residual_sweep(disks, chain, residual)
     keeping_signs = (0.0, 0.0, 1.0, *ELIMINATE_START[3:])
     negative = eliminate_sweep(keeping_signs, segments, disks, chain, residual, descent, pivots)[0]
-    carried = observe_start(inputs, segments, chain)
-    for i in range(q.shape[0]):
-        carried = observe_step(i, carried, q, inputs, segments, disks, pose)
-    return carried[0], carried[1], np.abs(residual).max(), int(negative)
+    elastic, gravity = observe(q, inputs, segments, disks, chain, pose)
+    return elastic, gravity, np.abs(residual).max(), int(negative)

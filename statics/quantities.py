@@ -98,7 +98,7 @@ stable               | -     | 1      | 1 where the equilibrium is stable
 unstable_directions  | -     | 1      | number of independent directions in which an equilibrium is unstable
 residual             | -     | N      | largest unbalanced generalized force, N or N m
 kinetic_energy       | -     | J      | kinetic energy of the masses
-elastic_energy       | -     | J      | energy stored in the core by bending and extension
+elastic_energy       | -     | J      | energy stored in what is elastic: the core, by bending and extension
 gravity_energy       | -     | J      | potential energy of the masses, zero at the base's height
 input_power          | -     | W      | power of the cables and of the loads on disks
 dissipated_power     | -     | W      | power lost to damping

@@ -196,7 +196,7 @@ def clearance_step(forces: SceneForces) -> Step:
 
 
 def pose_step(forces: SceneForces) -> Step:
-    """Outwards, at rest: geometry, loads and potential energy."""
+    """Outwards, at rest: geometry, loads, and the potential energy if there is one."""
     trace = Trace()
     reach = reach_of(forces, trace)
     carried = turn_frame(trace, forces)
@@ -204,25 +204,29 @@ def pose_step(forces: SceneForces) -> Step:
     ends, at = span_ends(trace, forces, carried, at_disk)
     cables = along_cables(trace, forces.coupled, at, moves=False)
     name_forces(trace, forces, at)
+    energies = _potential(trace, forces, at) if forces.conservative else {}
+    return Step(
+        "pose_step",
+        "Outwards, at rest: reach, loads, potential energy if there is one, clearance.",
+        ("q", "inputs", "segments", "disks", "chain"),
+        trace,
+        results=energies | {"clearance": (1.0, _smallest(trace, forces, at))},
+        carried=carried | pose | ends | cables,
+    )
+
+
+def _potential(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> dict[str, tuple[float, Any]]:
+    """Potential energy so far, and the sum of its parts' sizes."""
     parts = forces.places.items()
     energies = [(name, placed(sp.Add(*part.energies.values()), at)) for name, part in parts]
     energy = trace.let(
         "added_potential", sum(trace.let(f"{name}_potential", value) for name, value in energies)
     )
-    smallest = _smallest(trace, forces, at)
     drive = drive_energy(forces.coupled)
-    return Step(
-        "pose_step",
-        "Outwards, at rest: reach, loads, potential energy, clearance.",
-        ("q", "inputs", "segments", "disks", "chain"),
-        trace,
-        results={
-            "potential": (drive, symbol("potential") + energy),
-            "potential_scale": (sp.Abs(drive), symbol("potential_scale") + sp.Abs(energy)),
-            "clearance": (1.0, smallest),
-        },
-        carried=carried | pose | ends | cables,
-    )
+    return {
+        "potential": (drive, symbol("potential") + energy),
+        "potential_scale": (sp.Abs(drive), symbol("potential_scale") + sp.Abs(energy)),
+    }
 
 
 def placed(expression: Any, at: dict[Any, Any]) -> Any:
@@ -386,6 +390,10 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
             B[2, a] += turning
             C[a, 2] += turning
         D[2, 2] -= weights.stiffness * f.dot(reach.whole)
+    handed = weights.handed
+    if not (symmetric or weights.definite):
+        A += _slowing(dofs)
+        handed = [symbol("slowing")]
     A = _let_matrix(trace, symmetric, "A", A)
     B = trace.let("B", B)
     C = B.T if symmetric else trace.let("C", C)
@@ -419,12 +427,12 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
         "Inwards: one segment's coordinates eliminated; the rest goes to its near disk.",
         ("segments", "disks", "chain", "residual", "descent", "pivots"),
         trace,
-        results={str(weight): (0.0, weight) for weight in weights.handed} | counted,
+        results={str(weight): (0.0, weight) for weight in handed} | counted,
         carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r, c in entries}
         | {f"carried_load_{r}": (0.0, next_load[r]) for r in states}
         | inside,
         stores={"descent": list(descent)}
-        | ({} if weights.definite else {"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]}),
+        | ({"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]} if counted else {}),
     )
 
 
@@ -481,6 +489,14 @@ def _through_hole(
     return V * onto, load - V[:, state] * push
 
 
+def _slowing(dofs: int) -> sp.Matrix:
+    """What slows a search without a potential down: on bend angles it turns as a spring would, N m / rad.
+
+    On elongations it pulls with that over the square of the rest length.
+    """
+    return symbol("slowing") * sp.diag(1, 1 / symbol("rest_length") ** 2)[:dofs, :dofs]
+
+
 def _merged(V: sp.Matrix, load: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     """Matrix and load on (near node, span's start) where, at the span's first segment, the two are one."""
     rest = V.shape[0] - 6
@@ -506,7 +522,7 @@ def _pivot_inverse(
     """The pivot's inverse and what the sweep counts.
 
     Where the matrix may be indefinite the pivot is made positive, unless the sweep is asked to keep its
-    sign; otherwise there is nothing to count.
+    sign; otherwise, and where it has no symmetry that would give the counts a meaning, nothing is counted.
     """
     dofs = A.shape[0]
     if weights.definite or not symmetric:

@@ -9,7 +9,7 @@ import numpy as np
 
 from statics.arm import Arm, CableKind
 from statics.effects import DiskLoads, Effect
-from statics.errors import InputError
+from statics.errors import InputError, did_you_mean
 
 
 @dataclass(frozen=True)
@@ -106,13 +106,19 @@ class Scene:
         return any(effect.name == name for effect in self.effects)
 
     def table(self, place: str, columns: Iterable[str]) -> np.ndarray:
-        """The run-time numbers of a kernel, shape (segments, columns), for "segment" or "disk" (nodes)."""
+        """The run-time numbers of a kernel, shape (segments, columns), for "segment" or "disk" (nodes).
+
+        A span's stand on its segments. Raises ``InputError`` for what neither the arm nor an effect knows.
+        """
         known: dict[str, np.ndarray | float] = {}
         known.update(self.arm.segment_columns() if place == "segment" else self.arm.node_columns())
         for effect in self.effects:
             if (effect.place == "disk") == (place == "disk"):
                 known.update(effect.columns(self.arm))
         names = list(columns)
+        for name in names:
+            if name not in known:
+                raise InputError(f"'{name}' has no value on each {place}.{did_you_mean(name, known)}")
         table = np.empty((self.arm.segments, len(names)))
         for number, name in enumerate(names):
             table[:, number] = known[name]

@@ -129,7 +129,8 @@ class DrivenLoad(NamedTuple):
 class SpanSymbols:
     """The core from one disk to the next where several segments make it: the poses of its two ends.
 
-    Ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with ``span_``.
+    Ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with ``span_``; other
+    names are its parameters.
     """
 
     def __init__(self, cables: tuple[CableKind, ...], holes_differ: bool = False) -> None:
@@ -142,6 +143,9 @@ class SpanSymbols:
             for name in ("velocity_x", "velocity_y", "angular_velocity")
         ]
         self.accelerations = [symbol(f"{coordinate}_acceleration") for coordinate in self.coordinates]
+
+    def __getattr__(self, name: str) -> sp.Symbol:
+        return _parameter(name)
 
     @cached_property
     def cables(self) -> list[CableSymbols]:

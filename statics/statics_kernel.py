@@ -5,9 +5,10 @@ from pathlib import Path
 from statics.codegen import DERIVATION, Recipe
 from statics.scene import Scene
 
-_NEWTON = Path(__file__).with_name("newton.py")
-_CHAIN = Path(__file__).with_name("chain.py")
-_CABLES = Path(__file__).with_name("cable_sweep.py")
+_HERE = Path(__file__).parent
+_SHARED = (_HERE / "chain.py", _HERE / "search.py")
+_BY_ENERGY, _BY_RESIDUAL = _HERE / "newton.py", _HERE / "balance.py"
+_CABLES = _HERE / "cable_sweep.py"
 
 
 def write(scene: Scene) -> str:
@@ -26,8 +27,9 @@ def write(scene: Scene) -> str:
         recursion.observe_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    sources = (*([_CABLES] if forces.coupled else []), _CHAIN, _NEWTON)
+    cables = [_CABLES] if forces.coupled else []
+    sources = (*cables, *_SHARED, _BY_ENERGY if forces.conservative else _BY_RESIDUAL)
     return compose("Statics of a planar cable-driven arm.", forces, names, steps, sources)
 
 
-RECIPE = Recipe("statics", write, (*DERIVATION, _CABLES, _NEWTON, Path(__file__)))
+RECIPE = Recipe("statics", write, (*DERIVATION, *_SHARED, _CABLES, _BY_ENERGY, _BY_RESIDUAL, Path(__file__)))

@@ -98,32 +98,50 @@ def partial_displacement(displacement: Any, coordinate: sp.Symbol) -> Any:
     return sp.diff(displacement, coordinate)
 
 
-def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
-    """Energy V with P = -dV/dr: of a constant load, or of one linear in its own displacement.
+_OWN = sp.Dummy("r", real=True)
 
-    A linear load's energy is zero where the load is. Raises ``InputError`` for any other load.
-    """
-    load, displacement = pair
+
+def _is_constant(load: Any, coordinates: Sequence[sp.Symbol]) -> bool:
     parts = load if isinstance(load, Sequence) else (load,)
-    if not any(sp.sympify(part).has(*coordinates) for part in parts):
-        return -dot(load, displacement)
-    if displacement in coordinates:
-        stiffness = -sp.diff(load, displacement)
-        if not stiffness.has(*coordinates):
-            return stiffness * sp.expand(load / stiffness) ** 2 / 2
-    raise InputError(f"no potential is known for the load {load} along {displacement}")
+    return not any(sp.sympify(part).has(*coordinates) for part in parts)
 
 
-def has_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
-    """Whether every load that acts at rest has a potential."""
+def has_potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> bool:
+    """Whether the load is constant, or its own displacement alone changes it; a follower load has none."""
+    load, displacement = pair
+    if _is_constant(load, coordinates) or isinstance(displacement, Sequence):
+        return _is_constant(load, coordinates)
+    return _is_constant(sp.sympify(load).subs(displacement, _OWN), coordinates)
+
+
+def have_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
+    """Whether every load that acts at rest has a potential; what dissipates never has one."""
     at_rest = [(effect, group) for effect, group in groups if effect.acts_at_rest]
     if any(effect.account == "dissipated_power" for effect, _ in at_rest):
         return False
-    pairs = [pair for _, group in at_rest for pair in group]
-    try:
-        return all(potential(pair, coordinates) is not None for pair in pairs)
-    except InputError:
-        return False
+    return all(has_potential(pair, coordinates) for _, group in at_rest for pair in group)
+
+
+def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
+    """Energy V with P = -dV/dr: of a constant load, or of one that its own displacement alone changes.
+
+    A linear load's energy is zero where the load is, any other's where the displacement is. Raises
+    ``InputError`` for a load that something else changes.
+    """
+    load, displacement = pair
+    if not has_potential(pair, coordinates):
+        raise InputError(f"no potential is known for the load {load} along {displacement}")
+    if _is_constant(load, coordinates):
+        return -dot(load, displacement)
+    return _stored(sp.sympify(load).subs(displacement, _OWN)).subs(_OWN, displacement)
+
+
+def _stored(load: Any) -> Any:
+    """Energy of a load that ``_OWN`` changes."""
+    stiffness = -sp.diff(load, _OWN)
+    if not stiffness.has(_OWN):
+        return stiffness * sp.expand(load / stiffness) ** 2 / 2
+    return -sp.integrate(load, (_OWN, 0, _OWN))
 
 
 def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
@@ -136,7 +154,10 @@ def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
 
 
 def derive_statics(scene: Scene) -> SceneForces:
-    """Forces of the effects that act at rest, with their potentials, those of the loads included."""
+    """Forces of the effects that act at rest, with their potentials, those of the loads included.
+
+    What has no potential, as a follower load, has no part in the energies.
+    """
     return derive(scene.at_rest, _at_rest)
 
 
@@ -152,7 +173,7 @@ def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneFor
         on_segment, on_span = on_segment + on_span, []
     places = [(on_segment, segment), (on_disk, disk), (on_span, span or segment)]
     return SceneForces(
-        all(has_potentials(groups, at.coordinates) for groups, at in places),
+        all(have_potentials(groups, at.coordinates) for groups, at in places),
         scene.inputs,
         segment,
         disk,
@@ -168,7 +189,8 @@ def _at_rest(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> 
     pairs = [pair for _, group in groups for pair in group]
     force = generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)
     none = sp.zeros(len(coordinates))
-    energies = by_account(groups, lambda pair: potential(pair, coordinates))
+    with_potential = [group for group in groups if have_potentials([group], coordinates)]
+    energies = by_account(with_potential, lambda pair: potential(pair, coordinates))
     return Forces(force, none, none, -force.jacobian(coordinates), energies)
 
 

@@ -42,9 +42,10 @@ def explain(
         f"{' and '.join(scene.coordinates)} of each segment.\n"
     )
     typer.echo("Effects in play")
+    width = max((len(effect.name) for effect in scene.effects), default=0)
     for effect in scene.effects:
-        line = f"  {effect.name:<17} on each {effect.place:<8} {effect.source}"
-        typer.echo(fill(line, 79, subsequent_indent=" " * 36))
+        line = f"  {effect.name:<{width}} on each {effect.place:<8} {effect.source}"
+        typer.echo(fill(line, 79, subsequent_indent=" " * (width + 20)))
     found = _modes(scenario)
     show_additions(scenario, None if isinstance(found, InputError) else found)
     _print_method(scenario)

@@ -24,8 +24,9 @@ class Effect(Protocol):
     ``name`` is its key in scenario files; ``place`` says where the pairs stand (on each segment, on
     each span from disk to disk, or on each disk and other node); ``account`` in which line of the power
     ledger its work is booked; ``acts_at_rest`` is False for what exists in motion only; ``coordinates``
-    are those that it adds to a segment; ``arm_quantities`` are the numbers of the arm that it needs,
-    ``quantities`` its own (glossary names); ``source`` is where it comes from.
+    are those that it frees on a segment, beside the bend angle: ``elongation`` or none; ``arm_quantities``
+    are the numbers of the arm that it needs, ``quantities`` its own (glossary names); ``source`` is where it
+    comes from.
     """
 
     name: ClassVar[str]
@@ -38,9 +39,22 @@ class Effect(Protocol):
     source: ClassVar[str]
 
     def pairs(self, at: Any) -> list[Pair]:
-        """The pairs at one segment or one disk, by arithmetic on the symbols handed in."""
+        """The pairs at one segment, span or disk, by arithmetic on the symbols handed in.
+
+        They never depend on the values of parameters, which reach the kernel by ``columns``: kernels are kept
+        for scenes of the same effects, whatever their numbers.
+        """
         ...
 
     def columns(self, arm: Arm) -> Mapping[str, np.ndarray | float]:
         """Values of ``quantities``: scalars, or one for each segment or disk."""
         ...
+
+
+def effects_among(names: Mapping[str, Any]) -> dict[str, type[Effect]]:
+    """The effects among the names of a module, in their order there, by the name of each."""
+    return {
+        value.name: value
+        for value in names.values()
+        if isinstance(value, type) and hasattr(value, "pairs") and value is not Effect
+    }
