@@ -166,6 +166,7 @@ def _columns(forces: SceneForces, steps: Sequence[Step], bodies: list[_Body]) ->
 def _constants(forces: SceneForces, bodies: list[_Body], columns: _Columns) -> str:
     lines = [
         f"INPUTS = {len(forces.inputs)}",
+        f"COUPLED = {bool(forces.coupled)}",
         f"SEGMENT_COLUMNS = {tuple(columns.segments)!r}",
         f"DISK_COLUMNS = {tuple(columns.disks)!r}",
         f"CHAIN_COLUMNS = {len(columns.chain)}",

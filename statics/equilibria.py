@@ -6,16 +6,21 @@ not stable, the outcome says so. Under loads without a potential statics alone c
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 
 from statics import codegen, search
 from statics.arm import Arm
+from statics.effects.cable_friction import FAR, SLIP_PART
+from statics.effects.cables import cable_lengths, drive_tensions
 from statics.outcome import Outcome
 from statics.scene import Scene
 from statics.statics_kernel import RECIPE
 
 MAX_ITERATIONS = 200
+SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
+"""Slip lengths over the arm's length that a search with friction goes through: from soft to as it should be."""
 
 _OUTCOMES = {
     search.STABLE: Outcome.COMPLETED,
@@ -76,6 +81,13 @@ class Equilibrium:
         return np.column_stack(parts)
 
 
+class Slip(IntEnum):
+    """Which way cables that rub have all slipped: the two branches of a ramp with friction."""
+
+    DRAWN_IN = 1
+    LET_OUT = -1
+
+
 class StaticSolver:
     """The kernel and the numbers of one scene, for many equilibria in a row.
 
@@ -88,26 +100,36 @@ class StaticSolver:
         self.segments = self.scene.table("segment", self.kernel.SEGMENT_COLUMNS)
         self.disks = self.scene.table("disk", self.kernel.DISK_COLUMNS)
 
-    def solve(self, tension: np.ndarray, start: np.ndarray | None = None) -> Equilibrium:
+    def solve(
+        self,
+        inputs: np.ndarray,
+        start: np.ndarray | None = None,
+        before: "Equilibrium | Slip" = Slip.DRAWN_IN,
+    ) -> Equilibrium:
         """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default.
 
-        ``tension`` holds the scene's inputs: the tensions of its cables, then the factors of driven loads.
+        ``inputs`` are the scene's: of its cables, then the factors of driven loads. ``before`` is where the
+        arm comes from, or which way its cables last slipped: only friction asks for it.
         """
         arm = self.scene.arm
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
-        ended, iterations = self.kernel.find_equilibrium(
-            q, tension, self.segments, self.disks, arm.rest_length, MAX_ITERATIONS
-        )
+        ended, iterations = search.NOT_FOUND, 0
+        for slip_part in self._remember(before):
+            self._set("slip_length", np.full(arm.segments, slip_part * arm.total_length))
+            ended, more = self.kernel.find_equilibrium(
+                q, inputs, self.segments, self.disks, arm.rest_length, MAX_ITERATIONS
+            )
+            iterations += more
         pose = np.empty((arm.segments, 3))
-        elastic, gravity, residual, negative = self.kernel.examine(
-            q, tension, self.segments, self.disks, pose
-        )
+        elastic, gravity, residual, negative = self.kernel.examine(q, inputs, self.segments, self.disks, pose)
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(
             outcome=_OUTCOMES[ended],
-            tension=tension[: self.scene.cables],
-            load_factor=tension[self.scene.cables :] if self.scene.driven_loads else None,
+            tension=drive_tensions(arm, inputs, disk_x, disk_y, disk_theta)
+            if self.scene.cables
+            else inputs[:0],
+            load_factor=inputs[self.scene.cables :] if self.scene.driven_loads else None,
             bend_angle=q[:, 0],
             elongation=elongation,
             **shape_of(arm, q[:, 0], elongation),
@@ -121,13 +143,34 @@ class StaticSolver:
             residual=residual,
         )
 
+    def _remember(self, before: "Equilibrium | Slip") -> tuple[float, ...]:
+        """Put where the cables slip from into the table; returns the slip lengths to search with in turn."""
+        if not any(kind.rubs for kind in self.scene.cable_kinds):
+            return (0.0,)
+        arm = self.scene.arm
+        if isinstance(before, Slip):
+            lengths = [np.full(arm.disks, before * FAR * arm.total_length) for _ in arm.cables]
+        else:
+            ways = cable_lengths(arm, before.disk_x, before.disk_y, before.disk_theta)
+            lengths = [np.pad(np.cumsum(way[::-1])[::-1], (0, arm.disks - way.size)) for way in ways]
+        for number, beyond in enumerate(lengths, start=1):
+            self._set(f"length_before_{number}", np.repeat(beyond, arm.subsegments))
+        return SLIP_PARTS
+
+    def _set(self, name: str, values: np.ndarray) -> None:
+        """Fill the columns of a quantity, numbered or not, where the kernel has them."""
+        for column, known in enumerate(self.kernel.SEGMENT_COLUMNS):
+            if known == name or known.rpartition("_")[0] == name:
+                self.segments[:, column] = values
+
     def ramp(self, tensions: Iterable[np.ndarray], start: np.ndarray | None = None) -> list[Equilibrium]:
-        """An equilibrium for each set of tensions, each from the last one that was found."""
+        """An equilibrium for each set of inputs, each from the last one that was found."""
         points: list[Equilibrium] = []
-        for tension in tensions:
-            points.append(self.solve(tension, start))
+        before: Equilibrium | Slip = Slip.DRAWN_IN
+        for inputs in tensions:
+            points.append(self.solve(inputs, start, before))
             if points[-1].found:
-                start = points[-1].coordinates
+                start, before = points[-1].coordinates, points[-1]
         return points
 
     def warm_up(self) -> None:
@@ -141,21 +184,29 @@ def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) ->
     return {"curvature": bend_angle / length, "length": length}
 
 
-def equilibrium(scene: Scene, tension: object = None, start: Equilibrium | None = None) -> Equilibrium:
+def equilibrium(
+    scene: Scene,
+    tension: object = None,
+    start: Equilibrium | None = None,
+    before: Equilibrium | Slip = Slip.DRAWN_IN,
+) -> Equilibrium:
     """The arm at rest under these tensions, shape (cables,), N; a number will do for a single cable.
 
-    Newton's method from ``start``, or from the straight arm; effects that exist in motion only play no
-    part. Look at ``outcome``: an equilibrium that is not known to be unstable is ``completed``. Raises
-    ``InputError`` for tensions that do not fit. Rone 2012, Eq. 5.
+    For a cable that is driven by its length it is the displacement, m. Newton's method from ``start``, or
+    from the straight arm; effects that exist in motion only play no part. ``before`` is the equilibrium that
+    the arm comes from, or which way its cables have slipped: with friction there are two branches, and what
+    lies between. Look at ``outcome``: a stable equilibrium is ``completed``. Raises ``InputError`` for
+    tensions that do not fit. Rone 2012, Eq. 5.
     """
     values = scene.check_tension(tension)
-    return StaticSolver(scene).solve(values, None if start is None else start.coordinates)
+    return StaticSolver(scene).solve(values, None if start is None else start.coordinates, before)
 
 
 def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
     """Equilibria under one set of tensions after another, each found from the one before it.
 
     Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
-    starts from the last one that was. Raises ``InputError`` for tensions that do not fit.
+    starts from the last one that was. With friction the first is that of cables drawn in, and every other
+    remembers the one before it. Raises ``InputError`` for tensions that do not fit.
     """
     return StaticSolver(scene).ramp([scene.check_tension(tension) for tension in tensions])

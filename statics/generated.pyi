@@ -11,6 +11,7 @@ Carried = tuple[float, ...]
 SEGMENT_COLUMNS: tuple[str, ...]
 DISK_COLUMNS: tuple[str, ...]
 INPUTS: int
+COUPLED: bool
 CHAIN_COLUMNS: int
 PIVOT_COLUMNS: int
 BEYOND_START: Carried

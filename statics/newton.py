@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
     from statics.generated import (
         CHAIN_COLUMNS,
+        COUPLED,
         ELIMINATE_START,
         PIVOT_COLUMNS,
         pose_start,
@@ -90,6 +91,39 @@ def pivot_inverse_2(
         size,
         low_is_negative + high_is_negative,
     )
+
+
+def eliminate_exactly(
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    residual: np.ndarray,
+    descent: np.ndarray,
+    pivots: np.ndarray,
+) -> int:
+    """Eliminate with the pivots as they are; returns the number of negative eigenvalues of the matrix."""
+    start = (0.0, 0.0, 1.0, *ELIMINATE_START[3:])
+    return int(eliminate_sweep(start, segments, disks, chain, residual, descent, pivots)[0])
+
+
+def descend(
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    residual: np.ndarray,
+    descent: np.ndarray,
+    pivots: np.ndarray,
+) -> int:
+    """Eliminate so that the step descends, exactly where it does so by itself; returns the negative pivots.
+
+    Cables of given length may hold what is unstable without them: then pivots are negative, the matrix not.
+    """
+    negative = int(eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, pivots)[0])
+    if COUPLED and negative > 0:
+        if eliminate_exactly(segments, disks, chain, residual, descent, pivots) == 0:
+            return 0
+        eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, pivots)
+    return negative
 
 
 def inner(first: np.ndarray, second: np.ndarray) -> float:
@@ -195,7 +229,7 @@ def find_equilibrium(
     potential, scale, clearance = pose_sweep(q, inputs, segments, disks, chain)
     for iteration in range(1, most + 1):
         residual_sweep(disks, chain, residual)
-        negative = int(eliminate_sweep(ELIMINATE_START, segments, disks, chain, residual, descent, pivots)[0])
+        negative = descend(segments, disks, chain, residual, descent, pivots)
         substitute_sweep(chain, descent, change)
         single, turn = measure(change, unit)
         slope, curvature = inner(residual, change), 0.0
@@ -247,7 +281,6 @@ def examine(
     pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
     pose_sweep(q, inputs, segments, disks, chain)
     residual_sweep(disks, chain, residual)
-    keeping_signs = (0.0, 0.0, 1.0, *ELIMINATE_START[3:])
-    negative = eliminate_sweep(keeping_signs, segments, disks, chain, residual, descent, pivots)[0]
+    negative = eliminate_exactly(segments, disks, chain, residual, descent, pivots)
     elastic, gravity = observe(q, inputs, segments, disks, chain, pose)
-    return elastic, gravity, np.abs(residual).max(), int(negative)
+    return elastic, gravity, np.abs(residual).max(), negative

@@ -127,11 +127,13 @@ class Scene:
     def check_tension(self, tension: object) -> np.ndarray:
         """Inputs of the scene at these tensions, shape (cables,), N; the factors of driven loads are 1.
 
-        Raises ``InputError`` unless there is one finite, non-negative number for each cable.
+        Of a cable that is driven by its length it is the displacement, m. Raises ``InputError`` unless there
+        is one finite number for each cable, and no negative tension.
         """
         values = np.atleast_1d(np.asarray([] if tension is None else tension, dtype=float))
         if values.shape != (self.cables,):
             raise InputError(f"{values.size} tensions given; the scene has {self.cables} cables in play.")
-        if not (np.isfinite(values).all() and (values >= 0).all()):
+        pulls = [not kind.driven_by_length for kind in self.cable_kinds]
+        if not (np.isfinite(values).all() and (values[pulls] >= 0).all()):
             raise InputError(f"tensions must be finite and not negative; given: {values.tolist()}.")
         return np.append(values, np.ones(self.driven_loads))
