@@ -1,0 +1,140 @@
+"""What a scenario file may hold: its tables, their keys and the types of their values."""
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, Discriminator, Field, Tag, create_model
+
+from continuum_dyn.effects import EFFECTS
+from continuum_dyn.profiles import PROFILES, Constant, Ramp, Sine, Step
+from continuum_dyn.study import (
+    Accuracy,
+    EquilibriumStudy,
+    MotionStudy,
+    RampStudy,
+    Solver,
+    StepResponseStudy,
+)
+from statics.arm import DiskNumber, Payload, PerDisk
+from statics.checked import STRICT, NonNegative, Positive, Vector
+
+
+class TableFile(BaseModel):
+    """A profile kept in a CSV file beside the scenario."""
+
+    model_config = STRICT
+    profile: str
+    file: str
+
+
+def _tension_kind(value: Any) -> str:
+    if isinstance(value, dict):
+        kind = value.get("profile")
+        return kind if isinstance(kind, str) and kind in PROFILES else "profile"
+    return "list" if isinstance(value, list) else "number"
+
+
+class UnknownProfile(BaseModel):
+    """Where a profile's name is not one of ours: only there to say so."""
+
+    profile: Annotated[str, Field(pattern="^(" + "|".join(PROFILES) + ")$")]
+
+
+ProfileTable = (
+    Annotated[Constant, Tag("constant")]
+    | Annotated[Step, Tag("step")]
+    | Annotated[Ramp, Tag("ramp")]
+    | Annotated[Sine, Tag("sine")]
+    | Annotated[TableFile, Tag("table")]
+    | Annotated[UnknownProfile, Tag("profile")]
+)
+Tension = Annotated[
+    Annotated[NonNegative, Tag("number")]
+    | Annotated[list[NonNegative], Field(min_length=1), Tag("list")]
+    | ProfileTable,
+    Discriminator(_tension_kind),
+]
+Factor = Annotated[
+    Annotated[float, Tag("number")] | Annotated[float, Tag("list")] | ProfileTable,
+    Discriminator(_tension_kind),
+]
+"""A list is not allowed, and told so as a number that it is not."""
+
+
+def _number_kind(value: Any) -> str:
+    return "list" if isinstance(value, list) else "number"
+
+
+PositiveEach = Annotated[
+    Annotated[Positive, Tag("number")] | Annotated[PerDisk, Tag("list")], Discriminator(_number_kind)
+]
+NumberEach = Annotated[
+    Annotated[float, Tag("number")]
+    | Annotated[Annotated[tuple[float, ...], Field(strict=False)], Tag("list")],
+    Discriminator(_number_kind),
+]
+"""One number, or a list of them: one for each disk."""
+
+
+class ArmTable(BaseModel):
+    """[arm]: what is given beats the preset."""
+
+    model_config = STRICT
+    preset: str | None = None
+    disks: DiskNumber | None = None
+    disk_spacing: PositiveEach | None = None
+    youngs_modulus: PositiveEach | None = None
+    core_radius: PositiveEach | None = None
+    area: PositiveEach | None = None
+    second_moment: PositiveEach | None = None
+    disk_mass: PositiveEach | None = None
+    disk_inertia: PositiveEach | None = None
+    core_density: Positive | None = None
+    reference_curvature: NumberEach | None = None
+    subsegments: int | str | None = None
+
+
+class CableTable(BaseModel):
+    """One of [[cables]]."""
+
+    model_config = STRICT
+    name: Annotated[str, Field(min_length=1, max_length=40)] | None = None
+    hole_offset: NumberEach
+    anchor: DiskNumber | None = None
+    tension: Tension
+
+
+class LoadTable(BaseModel):
+    """One of [[loads]]; with ``factor`` it changes in time."""
+
+    model_config = STRICT
+    disk: DiskNumber
+    force: Vector = (0.0, 0.0)
+    moment: float = 0.0
+    factor: Factor | None = None
+
+
+EffectsTable: type[BaseModel] = create_model(
+    "EffectsTable",
+    __config__=STRICT,
+    **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in ("cables", "loads")},  # pyright: ignore[reportArgumentType, reportCallIssue]
+)
+
+StudyTable = Annotated[
+    EquilibriumStudy | RampStudy | MotionStudy | StepResponseStudy,
+    Field(discriminator="kind"),
+]
+
+
+class ScenarioFile(BaseModel):
+    """The whole file."""
+
+    model_config = STRICT
+    title: Annotated[str, Field(max_length=200)] = ""
+    arm: ArmTable
+    effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]
+    cables: list[CableTable] = []
+    loads: list[LoadTable] = []
+    payloads: list[Payload] = []
+    study: StudyTable
+    solver: Solver = Solver()
+    accuracy: Accuracy | None = None

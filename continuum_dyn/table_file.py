@@ -1,0 +1,51 @@
+"""A profile kept in a CSV file beside the scenario."""
+
+import csv
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from continuum_dyn.profiles import Table
+from continuum_dyn.text_file import read_text
+from statics.errors import InputError
+
+
+def read_table(scenario: Path, name: str, quantity: str) -> Table:
+    """Read a table profile: CSV with the header ``time,tension`` (s, N) or ``time,factor``.
+
+    Raises ``InputError`` that names the table and the row that is wrong.
+    """
+    folder = scenario.parent.resolve()
+    path = (folder / name).resolve()
+    if not path.is_relative_to(folder):
+        raise InputError(f"{quantity}: the table '{name}' lies outside the scenario's folder.")
+    rows = list(csv.reader(read_text(path).splitlines()))
+    if not rows or [cell.strip() for cell in rows[0]] != ["time", quantity]:
+        found = ",".join(rows[0])[:60] if rows else "nothing"
+        raise InputError(f"table '{name}': the first line must be time,{quantity}; read: {found}")
+    values = [_row(name, number, row) for number, row in enumerate(rows[1:], start=1) if row]
+    if not values:
+        raise InputError(f"table '{name}': no rows below the header.")
+    negative = [row for row, (_, value) in enumerate(values, start=1) if value < 0]
+    if quantity == "tension" and negative:
+        raise InputError(
+            f"table '{name}', row {negative[0]}: a cable cannot push; read {values[negative[0] - 1][1]:g}"
+        )
+    try:
+        return Table(tuple(t for t, _ in values), tuple(tau for _, tau in values))
+    except InputError as error:
+        raise InputError(f"table '{name}': {error}") from error
+    except ValidationError as error:
+        detail = error.errors()[0]
+        row = int(detail["loc"][-1]) + 1
+        raise InputError(f"table '{name}', row {row}: {detail['msg']}; read {detail['input']!r}") from error
+
+
+def _row(name: str, number: int, row: list[str]) -> tuple[float, float]:
+    try:
+        t, tension = map(float, row)
+    except ValueError as error:
+        raise InputError(
+            f"table '{name}', row {number}: two numbers expected; read: {','.join(row)[:60]}"
+        ) from error
+    return t, tension

@@ -1,0 +1,23 @@
+"""Text files read from disk: refused where they are missing, too large or not text."""
+
+from pathlib import Path
+
+from statics.errors import InputError, did_you_mean
+
+MAX_FILE_SIZE = 50_000_000
+
+
+def read_text(path: Path) -> str:
+    """The file's text. Raises ``InputError`` that names the file and, if it is missing, its neighbours."""
+    try:
+        if path.stat().st_size > MAX_FILE_SIZE:
+            raise InputError(f"{path}: larger than {MAX_FILE_SIZE // 1_000_000} MB.")
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        known = [p.name for p in sorted(path.parent.glob("*.toml"))] if path.parent.is_dir() else []
+        hint = did_you_mean(path.name, known) if known else ""
+        raise InputError(f"{path}: no such file.{hint}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a text file in UTF-8.") from error
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}.") from error
