@@ -18,7 +18,7 @@ from typing import Any
 
 import sympy as sp
 
-from continuum_dyn.motion_steps import booked, disk_in_motion
+from continuum_dyn.motion_steps import disk_in_motion, integrated
 from statics.recursion import (
     Reach,
     Step,
@@ -77,7 +77,7 @@ def velocity_step(forces: SceneForces) -> Step:
     for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
         trace.name(f"disk_momentum_{row}", placed(value, at))
     trace.let("segment_momentum", _momentum(forces.on_segment, forces.segment))
-    power = booked(forces, "powers", "input_power", at)
+    power = integrated(forces, "input_power", at)
     return Step(
         "velocity_step",
         "Outwards: reach, velocity, momentum of the disk, loads without inertia; power in.",

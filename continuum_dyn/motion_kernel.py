@@ -9,6 +9,7 @@ from statics.scene import Scene
 _HERE = Path(__file__).parent
 _CHAIN = Path(statics.chain.__file__)
 _EQUATIONS = _HERE / "equations_of_motion.py"
+_BASE_POWER = _HERE / "base_power.py"
 
 
 def write(scene: Scene) -> str:
@@ -30,7 +31,8 @@ def write(scene: Scene) -> str:
         recursion.clearance_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    return compose("Dynamics of a planar cable-driven arm.", forces, names, steps, (_CHAIN, _EQUATIONS))
+    sources = (_CHAIN, _EQUATIONS, *([_BASE_POWER] if scene.arm.base_moves else []))
+    return compose("Dynamics of a planar cable-driven arm.", forces, names, steps, sources)
 
 
 RECIPE = Recipe(
@@ -39,6 +41,7 @@ RECIPE = Recipe(
     (
         *DERIVATION,
         _EQUATIONS,
-        *(_HERE / f"{stem}.py" for stem in ("virtual_power", "motion_steps", "motion_kernel")),
+        _BASE_POWER,
+        *(_HERE / f"{stem}.py" for stem in ("virtual_power", "transport", "motion_steps", "motion_kernel")),
     ),
 )

@@ -14,6 +14,7 @@ import sympy as sp
 from statics.recursion import (
     Reach,
     Step,
+    at_base,
     far_pose,
     from_start,
     name_forces,
@@ -41,8 +42,16 @@ def _far_velocity(
     relative = trace.let("relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
     far = trace.let("far_velocity", near + spin * turned(reach.whole) + relative)
     far_spin = trace.let("far_angular_velocity", spin + forces.segment.bend_angle_rate)
-    carried = dict(zip(map(str, [*near, spin]), [(0.0, value) for value in [*far, far_spin]], strict=True))
+    carried = _from_base(forces, [*near, spin], [*far, far_spin])
     return carried, dict(zip(forces.disk.rates, [*far, far_spin], strict=True))
+
+
+def _from_base(forces: SceneForces, near: list[sp.Symbol], far: list[Any]) -> dict[str, tuple[Any, Any]]:
+    """What is carried on of a disk's motion; before the first segment it is the base's."""
+    return {
+        str(name): (at_base(forces, str(name).replace("near", "base")), value)
+        for name, value in zip(near, far, strict=True)
+    }
 
 
 def _far_acceleration(
@@ -66,9 +75,7 @@ def _far_acceleration(
         + curving,
     )
     far_spin_rate = trace.let("far_angular_acceleration", spin_rate + w[0])
-    carried = dict(
-        zip(map(str, [*near, spin_rate]), [(0.0, value) for value in [*far, far_spin_rate]], strict=True)
-    )
+    carried = _from_base(forces, [*near, spin_rate], [*far, far_spin_rate])
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
 
@@ -101,6 +108,12 @@ def booked(forces: SceneForces, kind: str, account: str, at: dict[Any, Any]) -> 
     return sum(placed(getattr(part, kind).get(account, 0), at) for part in forces.places.values())
 
 
+def integrated(forces: SceneForces, account: str, at: dict[Any, Any]) -> Any:
+    """What a motion integrates of a power; of a moving base's it is a part, see ``transport.py``."""
+    of_base = booked(forces, "powers", "transport_power", at) if account == "input_power" else 0
+    return booked(forces, "powers", account, at) + of_base
+
+
 def motion_step(forces: SceneForces) -> Step:
     """Outwards: geometry, velocities, accelerations, and all loads, inertia included."""
     trace = Trace()
@@ -108,7 +121,7 @@ def motion_step(forces: SceneForces) -> Step:
     push, pushed = _far_acceleration(trace, forces, reach)
     at |= pushed
     name_forces(trace, forces, at)
-    powers = {name: trace.let(f"added_{name}", booked(forces, "powers", name, at)) for name in POWERS}
+    powers = {name: trace.let(f"added_{name}", integrated(forces, name, at)) for name in POWERS}
     return Step(
         "motion_step",
         "Outwards: reach, velocity, acceleration, loads; power in and power dissipated.",
@@ -171,9 +184,10 @@ def observe_motion_step(forces: SceneForces) -> Step:
     """Outwards: poses and velocities of the disks, energies and powers."""
     trace = Trace()
     _, carried, at = disk_in_motion(trace, forces)
+    transport = ("transport_energy",) if "transport_energy" in forces.on_disk.energies else ()
     accounts = {
         name: booked(forces, kind, name, at)
-        for kind, names in (("energies", ENERGIES), ("powers", POWERS))
+        for kind, names in (("energies", ENERGIES), ("powers", POWERS), ("energies", transport))
         for name in names
     }
     return Step(

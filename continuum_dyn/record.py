@@ -52,6 +52,9 @@ _PER_POINT = (
     "stable",
     "unstable_directions",
     "residual",
+    "base_x",
+    "base_y",
+    "base_theta",
 )
 
 

@@ -6,6 +6,7 @@ with its place, what was read, and the nearest allowed word.
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,18 @@ from pydantic import ValidationError
 
 from continuum_dyn.profiles import Constant, Profile
 from continuum_dyn.scenario_errors import explain
-from continuum_dyn.scenario_file import CableTable, EffectsTable, LoadTable, ScenarioFile, TableFile
+from continuum_dyn.scenario_file import (
+    BaseTable,
+    CableTable,
+    EffectsTable,
+    LoadTable,
+    ScenarioFile,
+    TableFile,
+)
 from continuum_dyn.study import RampStudy, Scenario
 from continuum_dyn.table_file import read_table
 from continuum_dyn.text_file import read_text
-from statics.arm import PRESETS, Arm, Cable, Each
+from statics.arm import PRESETS, Arm, Base, Cable, Each
 from statics.effects import Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
 from statics.scene import Scene
@@ -73,8 +81,11 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
     tension = tuple(_ramp_or_profile(cable, path, is_ramp) for cable in file.cables)
     if is_ramp:
         tension = _repeated(tension)
+    motion = _base_motion(file.base, path) if file.base is not None else ()
+    moves = not all(isinstance(profile, Constant) for profile in motion)
+    base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
     return Scenario(
-        scene=Scene(_arm(file), effects),
+        scene=Scene(replace(_arm(file), base=base), effects),
         tension=tension,
         study=file.study,
         solver=file.solver,
@@ -82,6 +93,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         load_factors=tuple(
             _profile(load.factor, path, "factor") for load in file.loads if load.factor is not None
         ),
+        base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or path.stem,
         text=text,
@@ -154,6 +166,10 @@ def _profile(given: Any, path: Path, quantity: str) -> Profile:
     if isinstance(given, float | int):
         return Constant(float(given))
     return read_table(path, given.file, quantity) if isinstance(given, TableFile) else given
+
+
+def _base_motion(base: BaseTable, path: Path) -> tuple[Profile, ...]:
+    return tuple(_profile(getattr(base, name), path, name) for name in BaseTable.model_fields)
 
 
 def _load(load: LoadTable) -> DiskLoad:

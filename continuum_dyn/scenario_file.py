@@ -5,7 +5,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, Discriminator, Field, Tag, create_model
 
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.profiles import PROFILES, Constant, Ramp, Sine, Step
+from continuum_dyn.profiles import PROFILES, Constant, Ramp, Sine, SmoothRamp, Step
 from continuum_dyn.study import (
     Accuracy,
     EquilibriumStudy,
@@ -43,6 +43,7 @@ ProfileTable = (
     Annotated[Constant, Tag("constant")]
     | Annotated[Step, Tag("step")]
     | Annotated[Ramp, Tag("ramp")]
+    | Annotated[SmoothRamp, Tag("smooth_ramp")]
     | Annotated[Sine, Tag("sine")]
     | Annotated[TableFile, Tag("table")]
     | Annotated[UnknownProfile, Tag("profile")]
@@ -53,7 +54,7 @@ Tension = Annotated[
     | ProfileTable,
     Discriminator(_tension_kind),
 ]
-Factor = Annotated[
+NumberOrProfile = Annotated[
     Annotated[float, Tag("number")] | Annotated[float, Tag("list")] | ProfileTable,
     Discriminator(_tension_kind),
 ]
@@ -110,7 +111,16 @@ class LoadTable(BaseModel):
     disk: DiskNumber
     force: Vector = (0.0, 0.0)
     moment: float = 0.0
-    factor: Factor | None = None
+    factor: NumberOrProfile | None = None
+
+
+class BaseTable(BaseModel):
+    """[base]: numbers, or how they change in time."""
+
+    model_config = STRICT
+    x: NumberOrProfile = 0.0
+    y: NumberOrProfile = 0.0
+    angle: NumberOrProfile = 0.0
 
 
 EffectsTable: type[BaseModel] = create_model(
@@ -131,6 +141,7 @@ class ScenarioFile(BaseModel):
     model_config = STRICT
     title: Annotated[str, Field(max_length=200)] = ""
     arm: ArmTable
+    base: BaseTable | None = None
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]
     cables: list[CableTable] = []
     loads: list[LoadTable] = []

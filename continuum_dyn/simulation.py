@@ -143,8 +143,8 @@ def _statics(scenario: Scenario) -> Run:
     solver = StaticSolver(scenario.scene)
     if isinstance(scenario.study, RampStudy):
         tensions = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
-        factors = [profile.initial for profile in scenario.load_factors]
-        tensions = np.hstack([tensions, np.tile(factors, (len(tensions), 1))])
+        others = scenario.initial_tension[len(scenario.tension) :]
+        tensions = np.hstack([tensions, np.tile(others, (len(tensions), 1))])
     else:
         tensions = scenario.initial_tension[None, :]
     solver.warm_up()

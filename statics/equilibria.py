@@ -6,6 +6,7 @@ not stable, the outcome says so.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -30,8 +31,8 @@ class Equilibrium:
     """An arm at rest under ``tension``, or the search for it where ``found`` is False.
 
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
-    loads,) or None; ``elongation`` is None in a scene without extension; SI units. ``residual`` is the
-    largest unbalanced generalized force, N or N m.
+    loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
+    ``base``; SI units. ``residual`` is the largest unbalanced generalized force, N or N m.
     """
 
     outcome: Outcome
@@ -49,6 +50,9 @@ class Equilibrium:
     unstable_directions: int
     iterations: int
     residual: float
+    base_x: float | None = None
+    base_y: float | None = None
+    base_theta: float | None = None
 
     @property
     def found(self) -> bool:
@@ -87,7 +91,7 @@ class StaticSolver:
     def solve(self, tension: np.ndarray, start: np.ndarray | None = None) -> Equilibrium:
         """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default.
 
-        ``tension`` holds the scene's inputs: the tensions of its cables, then the factors of driven loads.
+        ``tension`` holds the scene's inputs, ``Scene.inputs``; those of a base's motion play no part.
         """
         arm = self.scene.arm
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
@@ -102,8 +106,7 @@ class StaticSolver:
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(
             outcome=_OUTCOMES[ended],
-            tension=tension[: self.scene.cables],
-            load_factor=tension[self.scene.cables :] if self.scene.driven_loads else None,
+            **self.scene.driven_by(tension),
             bend_angle=q[:, 0],
             elongation=elongation,
             **shape_of(arm, q[:, 0], elongation),
@@ -131,7 +134,7 @@ class StaticSolver:
         self.solve(np.zeros(len(self.scene.inputs)))
 
 
-def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, np.ndarray]:
+def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, Any]:
     """Curvature (1/m) and length (m) of segments, the paper's k and L, from their coordinates."""
     length = arm.rest_lengths + (np.zeros_like(bend_angle) if elongation is None else elongation)
     return {"curvature": bend_angle / length, "length": length}

@@ -46,6 +46,19 @@ payload_inertia      | I_p   | kg m^2 | moment of inertia of a disk's payload ab
 payload_offset_x     | d_x   | m      | from a disk's centre to its payload's, along the core's tangent
 payload_offset_y     | d_y   | m      | from a disk's centre to its payload's, along the disk's y axis
 
+x                    | -     | m      | x of the base
+y                    | -     | m      | y of the base
+angle                | -     | rad    | direction in which the core starts at the base, against the x axis
+base_x               | x_b   | m      | x of the base
+base_y               | y_b   | m      | y of the base
+base_theta           | theta_b | rad  | angle of the base's normal against the x axis
+base_velocity_x      | v_bx  | m/s    | velocity of the base along x
+base_velocity_y      | v_by  | m/s    | velocity of the base along y
+base_angular_velocity | omega_b | rad/s | angular velocity of the base
+base_acceleration_x  | a_bx  | m/s^2  | acceleration of the base along x
+base_acceleration_y  | a_by  | m/s^2  | acceleration of the base along y
+base_angular_acceleration | alpha_b | rad/s^2 | angular acceleration of the base
+
 rest_length          | L_0   | m      | undeformed length L0 of a segment
 node_mass            | m     | kg     | mass at a segment's end: the disk's, if there is one, and the core's
 node_inertia         | I     | kg m^2 | moment of inertia at a segment's end
@@ -99,8 +112,8 @@ unstable_directions  | -     | 1      | number of independent directions in whic
 residual             | -     | N      | largest unbalanced generalized force, N or N m
 kinetic_energy       | -     | J      | kinetic energy of the masses
 elastic_energy       | -     | J      | energy stored in the core by bending and extension
-gravity_energy       | -     | J      | potential energy of the masses, zero at the base's height
-input_power          | -     | W      | power of the cables and of the loads on disks
+gravity_energy       | -     | J      | potential energy of the masses, zero at the origin
+input_power          | -     | W      | power of the cables, of the loads on disks and of a base that moves
 dissipated_power     | -     | W      | power lost to damping
 input_work           | -     | J      | time integral of the input power since the start
 mode                 | -     | 1      | number of a mode of small motion, the lowest first

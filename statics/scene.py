@@ -2,14 +2,22 @@
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from statics.arm import Arm
 from statics.effects import DiskLoads, Effect
 from statics.errors import InputError
+
+BASE_POSE = ("base_x", "base_y", "base_theta")
+BASE_MOTION = (
+    *("base_velocity_x", "base_velocity_y", "base_angular_velocity"),
+    *("base_acceleration_x", "base_acceleration_y", "base_angular_acceleration"),
+)
+"""The first and the second derivatives of the base's pose."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +50,11 @@ class Scene:
 
     @property
     def at_rest(self) -> "Scene":
-        """The same scene with only those effects that act at rest."""
-        return Scene(self.arm, (effect for effect in self.effects if effect.acts_at_rest))
+        """The same scene with only those effects that act at rest, on a base that does not move."""
+        arm = self.arm
+        if arm.base is not None and arm.base.moves:
+            arm = replace(arm, base=replace(arm.base, moves=False))
+        return Scene(arm, (effect for effect in self.effects if effect.acts_at_rest))
 
     def without(self, name: str) -> "Scene":
         """The same scene without the effect of that name."""
@@ -66,10 +77,27 @@ class Scene:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the numbers that drive the scene: tensions of its cables, then factors of driven loads."""
+        """Names of the numbers that drive the scene.
+
+        Tensions of its cables, factors of driven loads, the pose of a base if the arm has one, and its motion
+        if it moves.
+        """
         tensions = (f"tension_{number}" for number in range(1, self.cables + 1))
         factors = (f"load_factor_{number}" for number in range(1, self.driven_loads + 1))
-        return (*tensions, *factors)
+        pose = () if self.arm.base is None else BASE_POSE
+        return (*tensions, *factors, *pose, *(BASE_MOTION if self.arm.base_moves else ()))
+
+    def driven_by(self, inputs: np.ndarray) -> dict[str, Any]:
+        """Inputs, shape (..., inputs), by glossary name: ``tension`` (..., cables), and what else there is.
+
+        ``load_factor`` (..., driven loads) and the base's pose (...,) are None where the scene has none.
+        """
+        tension, factor, pose, _ = np.split(
+            inputs, np.cumsum([self.cables, self.driven_loads, len(BASE_POSE)]), axis=-1
+        )
+        known = {"tension": tension, "load_factor": factor if self.driven_loads else None}
+        base = np.moveaxis(pose, -1, 0) if self.arm.base else [None] * len(BASE_POSE)
+        return known | dict(zip(BASE_POSE, base, strict=True))
 
     @property
     def payloads(self) -> int:
@@ -104,7 +132,9 @@ class Scene:
         return table
 
     def check_tension(self, tension: object) -> np.ndarray:
-        """Inputs of the scene at these tensions, shape (cables,), N; the factors of driven loads are 1.
+        """Inputs of the scene at rest under these tensions, shape (cables,), N.
+
+        The factors of driven loads are 1, and the base is where it starts.
 
         Raises ``InputError`` unless there is one finite, non-negative number for each cable.
         """
@@ -113,4 +143,6 @@ class Scene:
             raise InputError(f"{values.size} tensions given; the scene has {self.cables} cables in play.")
         if not (np.isfinite(values).all() and (values >= 0).all()):
             raise InputError(f"tensions must be finite and not negative; given: {values.tolist()}.")
-        return np.append(values, np.ones(self.driven_loads))
+        pose = [] if self.arm.base is None else self.arm.base_pose
+        known = np.concatenate([values, np.ones(self.driven_loads), pose])
+        return np.pad(known, (0, len(self.inputs) - known.size))

@@ -37,12 +37,14 @@ def disk_loads(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force and moment of the cables on each disk, as the paper writes them.
 
-    Takes tensions, shape (cables,), N, and the poses of disks 1..n, shape (disks,), m and rad. Returns
+    Takes tensions, shape (cables,), N, and the poses of disks 1..n, shape (disks,), m and rad; the base is
+    where the arm has it. Returns
     force, shape (disks, 2), N, and moment about the disk's centre, shape (disks,), N m.
     Rone 2012, Eq. 22-25.
     """
-    theta = np.concatenate([[0.0], disk_theta])
-    center = np.column_stack([np.concatenate([[0.0], disk_x]), np.concatenate([[0.0], disk_y])])
+    base_x, base_y, base_theta = arm.base_pose
+    theta = np.concatenate([[base_theta], disk_theta])
+    center = np.column_stack([np.concatenate([[base_x], disk_x]), np.concatenate([[base_y], disk_y])])
     normal = np.column_stack([-np.sin(theta), np.cos(theta)])
     force = np.zeros((arm.disks, 2))
     moment = np.zeros(arm.disks)
