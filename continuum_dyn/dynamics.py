@@ -20,7 +20,8 @@ LEDGER = ("kinetic_energy", "elastic_energy", "gravity_energy", "input_power", "
 class Observation:
     """What follows from states: arrays over samples and disks; ``ledger`` by glossary name.
 
-    ``coordinates`` and ``rates`` have shape (samples, segments, dofs).
+    ``coordinates`` and ``rates`` have shape (samples, segments, dofs). ``transport_energy`` (J) is what the
+    state's ``input_work`` leaves out where the base moves: see ``transport.py``.
     """
 
     coordinates: np.ndarray
@@ -30,6 +31,7 @@ class Observation:
     disk_theta: np.ndarray
     tip_speed: np.ndarray
     ledger: dict[str, np.ndarray]
+    transport_energy: np.ndarray | float = 0.0
 
 
 class Dynamics:
@@ -119,23 +121,31 @@ class Dynamics:
         q, u = states[:, : self.size], states[:, self.size : 2 * self.size]
         return np.ascontiguousarray(q).reshape(shape), np.ascontiguousarray(u).reshape(shape)
 
-    def displacements(self, y: np.ndarray, change: np.ndarray) -> np.ndarray:
+    def displacements(self, y: np.ndarray, change: np.ndarray, inputs: np.ndarray) -> np.ndarray:
         """First-order change of the disks' poses by that of the coordinates, shape (segments, dofs).
 
-        Shape (disks, 3), m, m, rad: the velocities under rates of that size.
+        Shape (disks, 3), m, m, rad: the velocities under rates of that size, on a base that does not move.
         """
         q, _ = self.split(y[None, : 2 * self.size])
-        pose, velocity = np.empty((2, 1, self.scene.arm.segments, 3))
-        ledger, inputs = np.empty((1, len(LEDGER))), np.zeros((1, len(self.scene.inputs)))
-        self.kernel.observe(q, change[None], inputs, self.segments, self.disks, pose, velocity, ledger)
+        _, velocity, _ = self._observed(q, change[None], inputs[None])
         return velocity[0, self.scene.arm.disk_nodes]
+
+    def _observed(
+        self, q: np.ndarray, u: np.ndarray, inputs: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+        """Poses and velocities of the nodes, shape (samples, nodes, 3), and the ledger by name."""
+        names = [*LEDGER, *(["transport_energy"] if self.scene.arm.base_moves else [])]
+        pose, velocity = np.empty((2, *q.shape[:2], 3))
+        ledger = np.empty((len(q), len(names)))
+        self.kernel.observe(q, u, inputs, self.segments, self.disks, pose, velocity, ledger)
+        return pose, velocity, dict(zip(names, ledger.T, strict=True))
 
     def observe(self, states: np.ndarray, inputs: np.ndarray) -> Observation:
         """Poses, tip speed, energies and powers at states (samples, size) under inputs (samples, inputs)."""
         q, u = self.split(states)
-        pose, velocity = np.empty((*q.shape[:2], 3)), np.empty((*q.shape[:2], 3))
-        ledger = np.empty((len(states), len(LEDGER)))
-        self.kernel.observe(q, u, inputs, self.segments, self.disks, pose, velocity, ledger)
+        pose, velocity, ledger = self._observed(q, u, inputs)
+        if self.scene.arm.base_moves:
+            self.kernel.add_base_power(q, u, inputs, self.segments, self.disks, ledger["input_power"])
         disk_x, disk_y, disk_theta = np.moveaxis(pose[:, self.scene.arm.disk_nodes], -1, 0)
         return Observation(
             coordinates=q,
@@ -144,5 +154,6 @@ class Dynamics:
             disk_y=disk_y,
             disk_theta=disk_theta,
             tip_speed=np.hypot(velocity[:, -1, 0], velocity[:, -1, 1]),
-            ledger=dict(zip(LEDGER, ledger.T, strict=True)),
+            transport_energy=ledger.pop("transport_energy", 0.0),
+            ledger=ledger,
         )

@@ -1,7 +1,8 @@
 """The equations of motion on the chain: plain Python, composed into motion kernels.
 
 The integrator's state is y = (q, u, input_work, dissipated_energy): coordinates and rates of all
-segments, row by row, and the two time integrals of the power ledger.
+segments, row by row, and the two time integrals of the power ledger; where the base moves the first of them
+is the work without ``transport_energy`` (``transport.py``).
 """
 
 import math
@@ -33,9 +34,9 @@ if TYPE_CHECKING:
 def inputs_at(t: float, pieces: np.ndarray, inputs: np.ndarray) -> None:
     """Inputs at time t from one piece of each profile; its columns are those of ``profiles.Piece``."""
     for c in range(pieces.shape[0]):
-        inputs[c] = (
-            pieces[c, 1] + pieces[c, 2] * (t - pieces[c, 0]) + pieces[c, 3] * math.sin(pieces[c, 4] * t)
-        )
+        since = t - pieces[c, 0]
+        wave = pieces[c, 3] * math.sin(pieces[c, 4] * since + pieces[c, 5])
+        inputs[c] = pieces[c, 1] + pieces[c, 2] * since + wave
 
 
 def motion_sweep(
@@ -157,8 +158,8 @@ def observe(
 ) -> None:
     """What follows from q, u (samples, n, dofs) and inputs (samples, INPUTS), for every sample.
 
-    Poses and velocities of the disks, shape (samples, n, 3); and into ``ledger``, shape (samples, 5):
-    kinetic, elastic and gravity energy, power in, power dissipated.
+    Poses and velocities of the disks, shape (samples, n, 3); and into ``ledger``, shape (samples, columns),
+    the results of ``observe_step``: kinetic, elastic and gravity energy, power in, power dissipated, ...
     """
     chain = np.empty((q.shape[1], CHAIN_COLUMNS))
     for s in range(q.shape[0]):
@@ -168,5 +169,5 @@ def observe(
             carried = observe_step(
                 i, carried, q[s], u[s], inputs[s], segments, disks, chain, pose[s], velocity[s]
             )
-        for k in range(5):
+        for k in range(ledger.shape[1]):
             ledger[s, k] = carried[k]

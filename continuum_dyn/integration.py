@@ -51,6 +51,18 @@ def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
     integrate(dynamics, [brief], np.array([brief.start, brief.end]), y, solver, unwatched)
 
 
+def add_jump(dynamics: Dynamics, before: Span, span: Span, monitor: Monitor) -> None:
+    """Add what a jump of a cable's displacement puts into its stretch to the state's input work."""
+    if not dynamics.scene.driven_by_length:
+        return
+    t, y = monitor.reached
+    inputs = np.concatenate([stretch.inputs(np.array([span.start])) for stretch in (before, span)])
+    energy = dynamics.observe(np.tile(y, (2, 1)), inputs).ledger["elastic_energy"]
+    y = y.copy()
+    y[2 * dynamics.size] += energy[1] - energy[0]
+    monitor.reached = (t, y)
+
+
 class _Samples(NamedTuple):
     time: np.ndarray
     states: np.ndarray
@@ -94,7 +106,9 @@ def integrate(
     counters: Counter[str] = Counter()
     with interruptible(monitor), warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        for span in stretches:
+        for before, span in zip([None, *stretches], stretches, strict=False):
+            if before is not None:
+                add_jump(dynamics, before, span, monitor)
             inside = samples[1:][(samples[1:] >= span.start) & (samples[1:] < span.end)]
             if span is stretches[-1]:
                 inside = samples[1:][samples[1:] >= span.start]

@@ -2,14 +2,12 @@
 
 from pathlib import Path
 
-import statics.cable_sweep
 import statics.chain
 from continuum_dyn import equations_of_motion, motion_kernel
 from statics.codegen import Recipe
 from statics.scene import Scene
 
 _HERE = Path(__file__).parent
-_CABLES = Path(statics.cable_sweep.__file__)
 _SOURCES = (
     Path(statics.chain.__file__),
     Path(equations_of_motion.__file__),
@@ -19,14 +17,14 @@ _SOURCES = (
 
 def write(scene: Scene) -> str:
     """Text of the kernel module; derives everything with sympy."""
-    from continuum_dyn import momentum_steps
+    from continuum_dyn import momentum_steps, motion_steps
     from continuum_dyn.virtual_power import derive_dynamics
-    from statics import cable_steps, recursion
+    from statics import recursion
     from statics.compose import compose
 
     forces = momentum_steps.conservative(derive_dynamics(scene))
     steps = [
-        *cable_steps.measuring_steps(forces),
+        *motion_steps.measuring_steps(forces),
         momentum_steps.velocity_step(forces),
         recursion.residual_step(forces),
         momentum_steps.momentum_step(forces),
@@ -36,12 +34,12 @@ def write(scene: Scene) -> str:
         recursion.clearance_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    sources = (*([_CABLES] if forces.coupled else []), *_SOURCES)
+    sources = (*([motion_kernel.CABLES] if forces.coupled else []), *_SOURCES)
     return compose("The midpoint rule for a planar cable-driven arm.", forces, names, steps, sources)
 
 
 RECIPE = Recipe(
     "midpoint",
     write,
-    (*motion_kernel.RECIPE.sources, _CABLES, *_SOURCES, _HERE / "momentum_steps.py", Path(__file__)),
+    (*motion_kernel.RECIPE.sources, *_SOURCES, _HERE / "momentum_steps.py", Path(__file__)),
 )

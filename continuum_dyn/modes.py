@@ -140,7 +140,7 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
 
 
 def _still(inputs: np.ndarray) -> Span:
-    """Tensions and factors of loads that stay as they are."""
+    """What drives the scene, staying as it is."""
     return spans(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
 
 
@@ -160,10 +160,12 @@ def modes(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[Mode, ...]:
     in_step = shapes * dynamics.scales()[:size, None]
     pairs = [(int(k),) for k in np.flatnonzero(turning > 0.0)]
     pairs += _overdamped(decay, np.flatnonzero(turning == 0.0), shapes)
-    found = [
-        _mode(dynamics, y, [float(decay[k]) for k in pair], float(turning[pair[0]]), in_step[:, pair[0]])
-        for pair in pairs
-    ]
+    inputs = span.inputs(np.array([span.start]))[0]
+    found = []
+    for pair in pairs:
+        vector = in_step[:, pair[0]].reshape(-1, dynamics.dofs)
+        moved = dynamics.displacements(y, vector, inputs)
+        found.append(_mode([float(decay[k]) for k in pair], float(turning[pair[0]]), vector, moved))
     return tuple(sorted(found, key=lambda mode: mode.frequency))
 
 
@@ -192,11 +194,9 @@ def _overdamped(decay: np.ndarray, real: np.ndarray, shapes: np.ndarray) -> list
     return [(int(slow[row]), int(fast[column])) for row, column in zip(rows, columns, strict=True)]
 
 
-def _mode(dynamics: Dynamics, y: np.ndarray, decay: list[float], turning: float, vector: np.ndarray) -> Mode:
-    """A mode from its one or two decay rates (1/s), its angular frequency (rad/s) and its coordinates."""
+def _mode(decay: list[float], turning: float, coordinates: np.ndarray, shape: np.ndarray) -> Mode:
+    """A mode from its one or two decay rates (1/s), its angular frequency (rad/s) and its unscaled shape."""
     speed = float(np.hypot(decay[0], turning) if turning else np.sqrt(decay[0] * decay[1]))
-    coordinates = vector.reshape(-1, dynamics.dofs)
-    shape = dynamics.displacements(y, coordinates)
     tip = shape[-1, :2]
     per = np.copysign(np.hypot(shape[:, 0], shape[:, 1]).max(), tip[np.argmax(np.abs(tip))])
     ratio = float(np.mean(decay)) / speed

@@ -18,8 +18,8 @@ from typing import Any
 
 import sympy as sp
 
-from continuum_dyn.motion_steps import booked, disk_in_motion
-from statics.cable_tension import along_cables
+from continuum_dyn.motion_steps import disk_in_motion, integrated
+from statics.cable_tension import along_cables, drive_power
 from statics.recursion import (
     Reach,
     Step,
@@ -79,13 +79,18 @@ def velocity_step(forces: SceneForces) -> Step:
     for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
         trace.name(f"disk_momentum_{row}", placed(value, at))
     trace.let("segment_momentum", _momentum(forces.on_segment, forces.segment))
-    power = booked(forces, "powers", "input_power", at)
+    power = integrated(forces, "input_power", at)
     return Step(
         "velocity_step",
         "Outwards: reach, velocity, momentum of the disk, loads without inertia; power in.",
         ("q", "u", "inputs", "segments", "disks", "chain"),
         trace,
-        results={"input_power": (0.0, symbol("input_power") + trace.let("added_input_power", power))},
+        results={
+            "input_power": (
+                drive_power(forces.coupled),
+                symbol("input_power") + trace.let("added_input_power", power),
+            )
+        },
         carried=carried | cables,
     )
 

@@ -10,6 +10,7 @@ _HERE = Path(__file__).parent
 _CHAIN = Path(statics.chain.__file__)
 _EQUATIONS = _HERE / "equations_of_motion.py"
 CABLES, CABLE_CHANGES = _HERE / "moving_cable_sweep.py", _HERE / "cable_change_sweep.py"
+_BASE_POWER = _HERE / "base_power.py"
 
 
 def write(scene: Scene) -> str:
@@ -34,7 +35,8 @@ def write(scene: Scene) -> str:
         recursion.clearance_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    sources = (*([CABLES, CABLE_CHANGES] if forces.coupled else []), _CHAIN, _EQUATIONS)
+    cables = [CABLES, CABLE_CHANGES] if forces.coupled else []
+    sources = (*cables, _CHAIN, _EQUATIONS, *([_BASE_POWER] if scene.arm.base_moves else []))
     return compose("Dynamics of a planar cable-driven arm.", forces, names, steps, sources)
 
 
@@ -46,6 +48,7 @@ RECIPE = Recipe(
         CABLES,
         CABLE_CHANGES,
         _EQUATIONS,
-        *(_HERE / f"{stem}.py" for stem in ("virtual_power", "motion_steps", "motion_kernel")),
+        _BASE_POWER,
+        *(_HERE / f"{stem}.py" for stem in ("virtual_power", "transport", "motion_steps", "motion_kernel")),
     ),
 )

@@ -12,10 +12,11 @@ from typing import Any
 import sympy as sp
 
 from statics import cable_steps
-from statics.cable_tension import along_cables
+from statics.cable_tension import along_cables, drive_power, stored_in_cables
 from statics.recursion import (
     Reach,
     Step,
+    at_base,
     far_pose,
     from_start,
     name_forces,
@@ -43,8 +44,16 @@ def _far_velocity(
     relative = trace.let("relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
     far = trace.let("far_velocity", near + spin * turned(reach.whole) + relative)
     far_spin = trace.let("far_angular_velocity", spin + forces.segment.bend_angle_rate)
-    carried = dict(zip(map(str, [*near, spin]), [(0.0, value) for value in [*far, far_spin]], strict=True))
+    carried = _from_base(forces, [*near, spin], [*far, far_spin])
     return carried, dict(zip(forces.disk.rates, [*far, far_spin], strict=True))
+
+
+def _from_base(forces: SceneForces, near: list[sp.Symbol], far: list[Any]) -> dict[str, tuple[Any, Any]]:
+    """What is carried on of a disk's motion; before the first segment it is the base's."""
+    return {
+        str(name): (at_base(forces, str(name).replace("near", "base")), value)
+        for name, value in zip(near, far, strict=True)
+    }
 
 
 def _far_acceleration(
@@ -68,9 +77,7 @@ def _far_acceleration(
         + curving,
     )
     far_spin_rate = trace.let("far_angular_acceleration", spin_rate + w[0])
-    carried = dict(
-        zip(map(str, [*near, spin_rate]), [(0.0, value) for value in [*far, far_spin_rate]], strict=True)
-    )
+    carried = _from_base(forces, [*near, spin_rate], [*far, far_spin_rate])
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
 
@@ -103,6 +110,12 @@ def booked(forces: SceneForces, kind: str, account: str, at: dict[Any, Any]) -> 
     return sum(placed(getattr(part, kind).get(account, 0), at) for part in forces.places.values())
 
 
+def integrated(forces: SceneForces, account: str, at: dict[Any, Any]) -> Any:
+    """What a motion integrates of a power; of a moving base's it is a part, see ``transport.py``."""
+    of_base = booked(forces, "powers", "transport_power", at) if account == "input_power" else 0
+    return booked(forces, "powers", account, at) + of_base
+
+
 def motion_step(forces: SceneForces) -> Step:
     """Outwards: geometry, velocities, accelerations, and all loads, inertia included."""
     trace = Trace()
@@ -111,13 +124,16 @@ def motion_step(forces: SceneForces) -> Step:
     at |= pushed
     cables = along_cables(trace, forces.coupled, at, moves=True)
     name_forces(trace, forces, at)
-    powers = {name: trace.let(f"added_{name}", booked(forces, "powers", name, at)) for name in POWERS}
+    powers = {name: trace.let(f"added_{name}", integrated(forces, name, at)) for name in POWERS}
     return Step(
         "motion_step",
         "Outwards: reach, velocity, acceleration, loads; power in and power dissipated.",
         ("q", "u", "w", "inputs", "segments", "disks", "chain"),
         trace,
-        results={name: (0.0, symbol(name) + added) for name, added in powers.items()},
+        results={
+            name: (drive_power(forces.coupled) if name == "input_power" else 0.0, symbol(name) + added)
+            for name, added in powers.items()
+        },
         carried=carried | push | cables,
     )
 
@@ -161,8 +177,11 @@ def motion_tangent_step(forces: SceneForces) -> Step:
         (*step.arrays, "q_change", "u_change"),
         trace,
         results={
-            f"{name}_change": (0.0, symbol(f"{name}_change") + trace.change_of(value - symbol(name), change))
-            for name, (_, value) in step.results.items()
+            f"{name}_change": (
+                trace.change_of(start, change),
+                symbol(f"{name}_change") + trace.change_of(value - symbol(name), change),
+            )
+            for name, (start, value) in step.results.items()
         },
         carried=step.carried | changes,
     )
@@ -200,10 +219,15 @@ def observe_motion_step(forces: SceneForces) -> Step:
     trace = Trace()
     _, carried, at = disk_in_motion(trace, forces)
     cables = along_cables(trace, forces.coupled, at, moves=True)
+    transport = ("transport_energy",) if "transport_energy" in forces.on_disk.energies else ()
     accounts = {
         name: booked(forces, kind, name, at)
-        for kind, names in (("energies", ENERGIES), ("powers", POWERS))
+        for kind, names in (("energies", ENERGIES), ("powers", POWERS), ("energies", transport))
         for name in names
+    }
+    at_start = {
+        "elastic_energy": stored_in_cables(forces.coupled),
+        "input_power": drive_power(forces.coupled),
     }
     return Step(
         "observe_step",
@@ -211,7 +235,8 @@ def observe_motion_step(forces: SceneForces) -> Step:
         ("q", "u", "inputs", "segments", "disks", "chain", "pose", "velocity"),
         trace,
         results={
-            name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in accounts.items()
+            name: (at_start.get(name, 0.0), symbol(name) + trace.let(f"added_{name}", value))
+            for name, value in accounts.items()
         },
         carried=carried | cables,
         stores={

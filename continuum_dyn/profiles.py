@@ -1,14 +1,17 @@
-"""A tension or a load over time, as data: pieces between corners, evaluated in compiled code.
+"""What drives a motion over time, as data: pieces between corners, evaluated in compiled code.
 
-A piece is a row (start, value, slope, amplitude, angular frequency) and means
-value + slope (t - start) + amplitude sin(angular frequency t) from its start to the next one's. At a jump
-the later piece counts.
+A piece is a row (start, value, slope, amplitude, angular frequency, phase) and means
+
+    value + slope (t - start) + amplitude sin(angular frequency (t - start) + phase)
+
+from its start to the next one's, so its derivative is a piece, too. At a jump the later piece counts.
 """
 
 import dataclasses
+from collections.abc import Sequence
 from itertools import pairwise
-from math import pi
-from typing import Annotated, Literal
+from math import pi, sin
+from typing import Annotated, Literal, Protocol
 
 import numpy as np
 from pydantic import Field
@@ -20,8 +23,13 @@ from statics.errors import InputError
 TIME_RESOLUTION = 1e-300
 """Rows of a table closer than this (s) would have slopes beyond floating point."""
 
-Piece = tuple[float, float, float, float, float]
-"""Start (s), value, slope (1/s), amplitude, angular frequency (rad/s); values in N for a tension."""
+Piece = tuple[float, float, float, float, float, float]
+"""Start (s), value, slope (1/s), amplitude, angular frequency (rad/s), phase; values in N for a tension."""
+
+
+def straight(start: float, value: float, slope: float = 0.0) -> Piece:
+    """The piece without a wave."""
+    return start, value, slope, 0.0, 0.0, 0.0
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -38,7 +46,7 @@ class Constant:
 
     def pieces(self) -> list[Piece]:
         """One piece."""
-        return [(0.0, self.value, 0.0, 0.0, 0.0)]
+        return [straight(0.0, self.value)]
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -60,8 +68,8 @@ class Step:
 
     def pieces(self) -> list[Piece]:
         """Two pieces, or one if the step is at time zero."""
-        after = (self.at, self.after, 0.0, 0.0, 0.0)
-        return [(0.0, self.before, 0.0, 0.0, 0.0), after] if self.at > 0 else [after]
+        after = straight(self.at, self.after)
+        return [straight(0.0, self.before), after] if self.at > 0 else [after]
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -75,10 +83,7 @@ class Ramp:
     profile: Literal["ramp"] = "ramp"
 
     def __post_init__(self) -> None:
-        if self.end <= self.start:
-            raise InputError(
-                f"a ramp must end after it starts; start is {self.start:g} s, end {self.end:g} s"
-            )
+        _check_order(self.start, self.end)
 
     @property
     def initial(self) -> float:
@@ -88,27 +93,64 @@ class Ramp:
     def pieces(self) -> list[Piece]:
         """Three pieces, or two if the ramp starts at time zero."""
         slope = (self.after - self.before) / (self.end - self.start)
-        rising = [(self.start, self.before, slope, 0.0, 0.0), (self.end, self.after, 0.0, 0.0, 0.0)]
-        return [(0.0, self.before, 0.0, 0.0, 0.0), *rising] if self.start > 0 else rising
+        rising = [straight(self.start, self.before, slope), straight(self.end, self.after)]
+        return [straight(0.0, self.before), *rising] if self.start > 0 else rising
+
+
+@dataclass(frozen=True, config=STRICT)
+class SmoothRamp:
+    """``before`` until ``start``, ``after`` from ``end`` on, half a period of a cosine between.
+
+    It has no jump and no corner; its second derivative jumps at both ends.
+    """
+
+    before: float
+    after: float
+    start: NonNegative
+    end: Positive
+    profile: Literal["smooth_ramp"] = "smooth_ramp"
+
+    def __post_init__(self) -> None:
+        _check_order(self.start, self.end)
+
+    @property
+    def initial(self) -> float:
+        """Value at the equilibrium that the motion starts from."""
+        return self.before
+
+    def pieces(self) -> list[Piece]:
+        """Three pieces, or two if the ramp starts at time zero."""
+        mean, amplitude = (self.before + self.after) / 2, (self.after - self.before) / 2
+        rising = [
+            (self.start, mean, 0.0, amplitude, pi / (self.end - self.start), -pi / 2),
+            straight(self.end, self.after),
+        ]
+        return [straight(0.0, self.before), *rising] if self.start > 0 else rising
+
+
+def _check_order(start: float, end: float) -> None:
+    if end <= start:
+        raise InputError(f"a ramp must end after it starts; start is {start:g} s, end {end:g} s")
 
 
 @dataclass(frozen=True, config=STRICT)
 class Sine:
-    """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t)."""
+    """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t + ``phase``); ``phase`` in rad."""
 
     mean: float
     amplitude: float
     frequency: Positive
+    phase: float = 0.0
     profile: Literal["sine"] = "sine"
 
     @property
     def initial(self) -> float:
         """Value at the equilibrium that the motion starts from."""
-        return self.mean
+        return self.mean + self.amplitude * sin(self.phase)
 
     def pieces(self) -> list[Piece]:
         """One piece."""
-        return [(0.0, self.mean, 0.0, self.amplitude, 2 * pi * self.frequency)]
+        return [(0.0, self.mean, 0.0, self.amplitude, 2 * pi * self.frequency, self.phase)]
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -141,10 +183,10 @@ class Table:
         """One piece before the first row, one from each row to the next, one after the last."""
         rows = list(zip(self.time, self.value, strict=True))
         between = [
-            (t, value, (later[1] - value) / (later[0] - t), 0.0, 0.0) for (t, value), later in pairwise(rows)
+            straight(t, value, (later[1] - value) / (later[0] - t)) for (t, value), later in pairwise(rows)
         ]
         first, last = (min(0.0, self.time[0]), self.value[0]), rows[-1]
-        return [(*first, 0.0, 0.0, 0.0), *between, (*last, 0.0, 0.0, 0.0)]
+        return [straight(*first), *between, straight(*last)]
 
 
 def lowest(profile: "Profile") -> float:
@@ -156,19 +198,33 @@ def lowest(profile: "Profile") -> float:
     return min(profile.initial, *(piece[1] for piece in profile.pieces()))
 
 
-Profile = Constant | Step | Ramp | Sine | Table
+Profile = Constant | Step | Ramp | SmoothRamp | Sine | Table
 PROFILES: dict[str, type[Profile]] = {
     "constant": Constant,
     "step": Step,
     "ramp": Ramp,
+    "smooth_ramp": SmoothRamp,
     "sine": Sine,
     "table": Table,
 }
 
 
+class InPieces(Protocol):
+    """A profile, or what follows from one."""
+
+    @property
+    def initial(self) -> float:
+        """Value at the equilibrium that the motion starts from."""
+        ...
+
+    def pieces(self) -> list[Piece]:
+        """What it is from the start of each piece on."""
+        ...
+
+
 @dataclasses.dataclass(frozen=True)
 class Span:
-    """A stretch of time without corners, and each profile's piece over it, shape (profiles, 5)."""
+    """A stretch of time without corners, and each profile's piece over it, shape (profiles, 6)."""
 
     start: float
     end: float
@@ -176,12 +232,12 @@ class Span:
 
     def inputs(self, time: np.ndarray) -> np.ndarray:
         """Values at the given times of this span, shape (times, profiles); N for tensions."""
-        start, value, slope, amplitude, frequency = self.pieces.T
-        t = np.asarray(time)[:, None]
-        return value + slope * (t - start) + amplitude * np.sin(frequency * t)
+        start, value, slope, amplitude, frequency, phase = self.pieces.T
+        since = np.asarray(time)[:, None] - start
+        return value + slope * since + amplitude * np.sin(frequency * since + phase)
 
 
-def spans(profiles: tuple[Profile, ...], duration: float) -> list[Span]:
+def spans(profiles: Sequence[InPieces], duration: float) -> list[Span]:
     """The time from 0 to ``duration`` cut at every corner of any profile."""
     pieces = [profile.pieces() for profile in profiles]
     corners = {piece[0] for rows in pieces for piece in rows if 0 < piece[0] < duration}
@@ -193,5 +249,5 @@ def spans(profiles: tuple[Profile, ...], duration: float) -> list[Span]:
             rows[max(int(np.searchsorted(begin, start, side="right")) - 1, 0)]
             for rows, begin in zip(pieces, starts, strict=True)
         ]
-        result.append(Span(start, end, np.array(active).reshape(len(profiles), 5)))
+        result.append(Span(start, end, np.array(active).reshape(len(profiles), 6)))
     return result

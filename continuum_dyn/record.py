@@ -33,12 +33,14 @@ _DIMENSIONS = {
     **dict.fromkeys(("curvature", "length"), "segment"),
     **dict.fromkeys(("disk_x", "disk_y", "disk_theta"), "disk"),
     "tension": "cable",
+    "cable_displacement": "cable",
     "load_factor": "load",
 }
 """Second dimension of datasets that have one."""
 
 _PER_POINT = (
     "tension",
+    "cable_displacement",
     "load_factor",
     "bend_angle",
     "elongation",
@@ -52,6 +54,9 @@ _PER_POINT = (
     "stable",
     "unstable_directions",
     "residual",
+    "base_x",
+    "base_y",
+    "base_theta",
 )
 
 
@@ -192,6 +197,9 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
     _write_dataset(group, "hole_offset", offsets, ["cable", "hole"])
     anchors = np.array([cable.anchor or arm.disks for cable in cables], dtype=int)
     _write_dataset(group, "anchor", anchors, ["cable"])
+    _write_dataset(group, "friction", np.array([cable.friction for cable in cables], dtype=float), ["cable"])
+    stiffness = np.array([cable.cable_stiffness or 0.0 for cable in cables], dtype=float)
+    _write_dataset(group, "cable_stiffness", stiffness, ["cable"])
     for name, values in each.items():
         _write_dataset(group, name, np.array(values), ["disk"])
 
@@ -215,7 +223,7 @@ def _stacked(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:
 
 def _trajectory_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     columns = {name: value for name, value in vars(trajectory).items() if isinstance(value, np.ndarray)}
-    del columns["tip_speed"]
+    del columns["tip_speed"], columns["inputs"]
     return columns | trajectory.ledger
 
 

@@ -6,6 +6,7 @@ with its place, what was read, and the nearest allowed word.
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,19 @@ from pydantic import ValidationError
 
 from continuum_dyn.profiles import Constant, Profile
 from continuum_dyn.scenario_errors import explain
-from continuum_dyn.scenario_file import CableTable, EffectsTable, LoadTable, ScenarioFile, TableFile
+from continuum_dyn.scenario_file import (
+    BaseTable,
+    CableTable,
+    EffectsTable,
+    LoadTable,
+    ScenarioFile,
+    TableFile,
+)
 from continuum_dyn.study import RampStudy, Scenario
 from continuum_dyn.table_file import read_table
 from continuum_dyn.text_file import read_text
-from statics.arm import PRESETS, Arm, Cable, Each
-from statics.effects import Cables, DiskLoad, DiskLoads
+from statics.arm import PRESETS, Arm, Base, Cable, Each
+from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
 from statics.scene import Scene
 
@@ -68,13 +76,18 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
     ]
     if file.cables:
         effects.append(Cables())
+    if any(cable.friction > 0 for cable in file.cables):
+        effects.append(CableFriction())
     if file.loads:
         effects.append(DiskLoads(loads=tuple(map(_load, file.loads))))
-    tension = tuple(_ramp_or_profile(cable, path, is_ramp) for cable in file.cables)
+    tension = tuple(_ramp_or_profile(*_drive(cable), path, is_ramp) for cable in file.cables)
     if is_ramp:
         tension = _repeated(tension)
+    motion = _base_motion(file.base, path) if file.base is not None else ()
+    moves = not all(isinstance(profile, Constant) for profile in motion)
+    base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
     return Scenario(
-        scene=Scene(_arm(file), effects),
+        scene=Scene(replace(_arm(file), base=base), effects),
         tension=tension,
         study=file.study,
         solver=file.solver,
@@ -82,6 +95,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         load_factors=tuple(
             _profile(load.factor, path, "factor") for load in file.loads if load.factor is not None
         ),
+        base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or path.stem,
         text=text,
@@ -99,10 +113,7 @@ def _arm(file: ScenarioFile) -> Arm:
         raise InputError(
             f"[arm] missing {' and '.join(missing)}. Give them, or a preset: {', '.join(PRESETS)}."
         )
-    cables = tuple(
-        Cable(cable.name or f"cable_{number}", cable.hole_offset, cable.anchor)
-        for number, cable in enumerate(file.cables, start=1)
-    )
+    cables = tuple(_cable(cable, f"cable_{number}") for number, cable in enumerate(file.cables, start=1))
     lists = {name: values for name, values in numbers.items() if isinstance(values, tuple)}
     if isinstance(numbers["disk_spacing"], tuple):
         numbers["disk_spacing"] = sum(lists["disk_spacing"]) / len(lists["disk_spacing"])
@@ -134,19 +145,51 @@ def _with_radius(given: dict[str, Any]) -> dict[str, Any]:
     return {**rest, **{name: tuple(core[name] for core in cores) for name in cores[0]}}
 
 
-def _ramp_or_profile(cable: CableTable, path: Path, is_ramp: bool) -> Any:
-    tension = cable.tension
+def _cable(cable: CableTable, numbered: str) -> Cable:
+    slip = {} if cable.slip_speed is None else {"slip_speed": cable.slip_speed}
+    return Cable(
+        cable.name or numbered,
+        cable.hole_offset,
+        cable.anchor,
+        cable_stiffness=cable.cable_stiffness,
+        friction=cable.friction,
+        **slip,
+    )
+
+
+def _drive(cable: CableTable) -> tuple[Any, str]:
+    """What drives a cable, its tension or its displacement; and which of the two it is."""
+    given = {"tension": cable.tension, "cable_displacement": cable.cable_displacement}
+    known = [name for name, value in given.items() if value is not None]
+    where = "[[cables]]" if cable.name is None else f"[[cables]] '{cable.name}'"
+    if len(known) == 2:
+        raise InputError(f"{where}: both tension and cable_displacement. A cable is driven by one: give one.")
+    if not known:
+        raise InputError(f"{where}: missing what drives it. Give tension (N), or cable_displacement (m).")
+    if known == ["cable_displacement"] and cable.cable_stiffness is None:
+        raise InputError(
+            f"{where}: cable_displacement needs the stiffness behind it. Give cable_stiffness (N/m)."
+        )
+    if known == ["tension"] and cable.cable_stiffness is not None:
+        raise InputError(
+            f"{where}: cable_stiffness belongs to cable_displacement; a given tension stretches no cable. "
+            "Leave it out, or give cable_displacement (m) instead of tension."
+        )
+    return given[known[0]], known[0]
+
+
+def _ramp_or_profile(drive: Any, quantity: str, path: Path, is_ramp: bool) -> Any:
     if is_ramp:
-        if isinstance(tension, float | int):
-            return (float(tension),)
-        if not isinstance(tension, list):
+        if isinstance(drive, float | int):
+            return (float(drive),)
+        if not isinstance(drive, list):
             raise InputError(
-                '[[cables]] a "ramp" study takes a number or a list of numbers for each tension.'
+                f'[[cables]] a "ramp" study takes a number or a list of numbers for each {quantity}.'
             )
-        return tuple(map(float, tension))
-    if isinstance(tension, list):
-        raise InputError('[[cables]] a list of tensions belongs to [study] kind = "ramp".')
-    return _profile(tension, path, "tension")
+        return tuple(map(float, drive))
+    if isinstance(drive, list):
+        raise InputError(f'[[cables]] a list for {quantity} belongs to [study] kind = "ramp".')
+    return _profile(drive, path, quantity)
 
 
 def _profile(given: Any, path: Path, quantity: str) -> Profile:
@@ -154,6 +197,10 @@ def _profile(given: Any, path: Path, quantity: str) -> Profile:
     if isinstance(given, float | int):
         return Constant(float(given))
     return read_table(path, given.file, quantity) if isinstance(given, TableFile) else given
+
+
+def _base_motion(base: BaseTable, path: Path) -> tuple[Profile, ...]:
+    return tuple(_profile(getattr(base, name), path, name) for name in BaseTable.model_fields)
 
 
 def _load(load: LoadTable) -> DiskLoad:

@@ -11,7 +11,15 @@ from pydantic import BaseModel, ValidationError
 
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.profiles import PROFILES
-from continuum_dyn.scenario_file import ArmTable, CableTable, EffectsTable, LoadTable, ScenarioFile, TableFile
+from continuum_dyn.scenario_file import (
+    ArmTable,
+    BaseTable,
+    CableTable,
+    EffectsTable,
+    LoadTable,
+    ScenarioFile,
+    TableFile,
+)
 from continuum_dyn.study import STUDIES, Accuracy, Solver
 from statics.arm import Payload
 from statics.errors import did_you_mean
@@ -21,6 +29,7 @@ MAX_SHOWN = 12
 _KEYS: dict[str, Any] = {
     "": ScenarioFile,
     "arm": ArmTable,
+    "base": BaseTable,
     "effects": EffectsTable,
     "cables": CableTable,
     "loads": LoadTable,
@@ -29,10 +38,14 @@ _KEYS: dict[str, Any] = {
     "accuracy": Accuracy,
     **{f"study.{name}": study for name, study in STUDIES.items()},
     **{f"effects.{name}": effect for name, effect in EFFECTS.items()},
-    **{f"cables.tension.{name}": profile for name, profile in PROFILES.items()},
-    **{f"loads.factor.{name}": profile for name, profile in PROFILES.items()},
-    "cables.tension.table": TableFile,
-    "loads.factor.table": TableFile,
+    **{
+        f"{place}.{name}": TableFile if name == "table" else profile
+        for place in (
+            *("cables.tension", "cables.cable_displacement", "loads.factor"),
+            *("base.x", "base.y", "base.angle"),
+        )
+        for name, profile in PROFILES.items()
+    },
 }
 
 

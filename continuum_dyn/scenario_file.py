@@ -5,7 +5,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, Discriminator, Field, Tag, create_model
 
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.profiles import PROFILES, Constant, Ramp, Sine, Step
+from continuum_dyn.profiles import PROFILES, Constant, Ramp, Sine, SmoothRamp, Step
 from continuum_dyn.study import (
     Accuracy,
     EquilibriumStudy,
@@ -26,7 +26,7 @@ class TableFile(BaseModel):
     file: str
 
 
-def _tension_kind(value: Any) -> str:
+def _drive_kind(value: Any) -> str:
     if isinstance(value, dict):
         kind = value.get("profile")
         return kind if isinstance(kind, str) and kind in PROFILES else "profile"
@@ -43,6 +43,7 @@ ProfileTable = (
     Annotated[Constant, Tag("constant")]
     | Annotated[Step, Tag("step")]
     | Annotated[Ramp, Tag("ramp")]
+    | Annotated[SmoothRamp, Tag("smooth_ramp")]
     | Annotated[Sine, Tag("sine")]
     | Annotated[TableFile, Tag("table")]
     | Annotated[UnknownProfile, Tag("profile")]
@@ -51,11 +52,15 @@ Tension = Annotated[
     Annotated[NonNegative, Tag("number")]
     | Annotated[list[NonNegative], Field(min_length=1), Tag("list")]
     | ProfileTable,
-    Discriminator(_tension_kind),
+    Discriminator(_drive_kind),
 ]
-Factor = Annotated[
+Displacement = Annotated[
+    Annotated[float, Tag("number")] | Annotated[list[float], Field(min_length=1), Tag("list")] | ProfileTable,
+    Discriminator(_drive_kind),
+]
+NumberOrProfile = Annotated[
     Annotated[float, Tag("number")] | Annotated[float, Tag("list")] | ProfileTable,
-    Discriminator(_tension_kind),
+    Discriminator(_drive_kind),
 ]
 """A list is not allowed, and told so as a number that it is not."""
 
@@ -94,13 +99,17 @@ class ArmTable(BaseModel):
 
 
 class CableTable(BaseModel):
-    """One of [[cables]]."""
+    """One of [[cables]]: driven by its tension, or by its displacement with its stiffness."""
 
     model_config = STRICT
     name: Annotated[str, Field(min_length=1, max_length=40)] | None = None
     hole_offset: NumberEach
     anchor: DiskNumber | None = None
-    tension: Tension
+    tension: Tension | None = None
+    cable_displacement: Displacement | None = None
+    cable_stiffness: Positive | None = None
+    friction: NonNegative = 0.0
+    slip_speed: Positive | None = None
 
 
 class LoadTable(BaseModel):
@@ -110,13 +119,25 @@ class LoadTable(BaseModel):
     disk: DiskNumber
     force: Vector = (0.0, 0.0)
     moment: float = 0.0
-    factor: Factor | None = None
+    factor: NumberOrProfile | None = None
 
+
+class BaseTable(BaseModel):
+    """[base]: numbers, or how they change in time."""
+
+    model_config = STRICT
+    x: NumberOrProfile = 0.0
+    y: NumberOrProfile = 0.0
+    angle: NumberOrProfile = 0.0
+
+
+NAMED_ELSEWHERE = ("cables", "cable_friction", "loads")
+"""Effects that come with a table of their own, or with a key in it."""
 
 EffectsTable: type[BaseModel] = create_model(
     "EffectsTable",
     __config__=STRICT,
-    **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in ("cables", "loads")},  # pyright: ignore[reportArgumentType, reportCallIssue]
+    **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
 )
 
 StudyTable = Annotated[
@@ -131,6 +152,7 @@ class ScenarioFile(BaseModel):
     model_config = STRICT
     title: Annotated[str, Field(max_length=200)] = ""
     arm: ArmTable
+    base: BaseTable | None = None
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]
     cables: list[CableTable] = []
     loads: list[LoadTable] = []

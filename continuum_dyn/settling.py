@@ -1,11 +1,28 @@
 """Whether a motion has come to rest where the statics say that it must."""
 
+from collections.abc import Sequence
+from itertools import pairwise
 from math import hypot
 
+TipPose = tuple[float, float, float]
+"""x, y (m) and theta (rad)."""
 
-def tip_gap(tip: tuple[float, float, float], rest: tuple[float, float, float]) -> float:
-    """Distance (m) between two tip poses (x, y, theta)."""
-    return hypot(tip[0] - rest[0], tip[1] - rest[1])
+
+def tip_gap(tip: TipPose, rests: Sequence[TipPose]) -> float:
+    """Distance (m) of the tip from where it may rest: from a pose, or from the lines that join several.
+
+    With friction an arm may come to rest anywhere between the two branches of its equilibria.
+    """
+    joined = pairwise(rests) if len(rests) > 1 else [(rests[0], rests[0])]
+    return min(_from_line(tip, start, end) for start, end in joined)
+
+
+def _from_line(tip: TipPose, start: TipPose, end: TipPose) -> float:
+    along_x, along_y = end[0] - start[0], end[1] - start[1]
+    away_x, away_y = tip[0] - start[0], tip[1] - start[1]
+    squared = along_x**2 + along_y**2
+    part = 0.0 if squared == 0.0 else min(1.0, max(0.0, (away_x * along_x + away_y * along_y) / squared))
+    return hypot(away_x - part * along_x, away_y - part * along_y)
 
 
 def settled(gap: float, speed: float, within: float) -> bool:

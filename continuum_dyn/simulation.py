@@ -4,7 +4,7 @@ Every run ends in a named outcome and keeps what it computed.
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -143,8 +143,8 @@ def _statics(scenario: Scenario) -> Run:
     solver = StaticSolver(scenario.scene)
     if isinstance(scenario.study, RampStudy):
         tensions = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
-        factors = [profile.initial for profile in scenario.load_factors]
-        tensions = np.hstack([tensions, np.tile(factors, (len(tensions), 1))])
+        others = scenario.initial_tension[len(scenario.tension) :]
+        tensions = np.hstack([tensions, np.tile(others, (len(tensions), 1))])
     else:
         tensions = scenario.initial_tension[None, :]
     solver.warm_up()
@@ -200,7 +200,8 @@ def _motion(
         budget=budget,
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
-    end = statics.solve(stretches[-1].inputs(np.array([study.duration]))[0], start.coordinates)
+    last = stretches[-1].inputs(np.array([study.duration]))[0]
+    end = statics.solve(last, start.coordinates, start)
     path = statics.ramp(moved.trajectory.inputs, start.coordinates) if study.static_path else []
     run = Run(
         scenario,
@@ -213,7 +214,7 @@ def _motion(
         tip_error=moved.tip_error,
         solve_time=time.perf_counter() - started,
     )
-    return run if monitor.outcome else _compared(run, study, end)
+    return run if monitor.outcome else _compared(run, study, end, statics.branches(last, end))
 
 
 class _Moved(NamedTuple):
@@ -259,10 +260,11 @@ def _moved(
     return _Moved(found.trajectory, found.solver, found.estimate)
 
 
-def _compared(run: Run, study: MotionStudy, end: Equilibrium) -> Run:
-    """The run with its distance from the final equilibrium, and the verdict of a step response."""
+def _compared(run: Run, study: MotionStudy, end: Equilibrium, branches: Sequence[Equilibrium] = ()) -> Run:
+    """The run with its distance from where it may end, and the verdict of a step response."""
     assert run.trajectory is not None
-    gap = tip_gap(run.trajectory.tip, end.tip) if end.found else None
+    rests = [point.tip for point in (branches or (end,)) if point.found]
+    gap = tip_gap(run.trajectory.tip, rests) if rests else None
     if not isinstance(study, StepResponseStudy):
         return replace(run, static_gap=gap)
     if gap is None or end.outcome is not Outcome.COMPLETED:

@@ -1,13 +1,14 @@
 """What is asked of a scene: the kinds of study, the solver's settings, and the scenario that joins them."""
 
 import dataclasses
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from continuum_dyn.profiles import Constant, Profile, lowest
+from continuum_dyn.profiles import Constant, InPieces, Profile, lowest
+from continuum_dyn.smooth_motion import Rate, check_smooth
 from statics.checked import STRICT, Positive
 from statics.effects import Effect
 from statics.errors import InputError
@@ -128,7 +129,8 @@ class Scenario:
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
     ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
     program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. ``load_factors``
-    has a profile for each driven load. Raises ``InputError`` where these do not fit.
+    has a profile for each driven load, ``base_motion`` those of x, y (m) and angle (rad) of a base that
+    moves. Raises ``InputError`` where these do not fit.
     """
 
     scene: Scene
@@ -138,6 +140,7 @@ class Scenario:
     accuracy: Accuracy | None = None
     chooses_mesh: bool = False
     load_factors: tuple[Profile, ...] = ()
+    base_motion: tuple[Profile, ...] = ()
     title: str = ""
     text: str = ""
 
@@ -148,8 +151,11 @@ class Scenario:
             raise InputError(
                 f"{len(self.load_factors)} factors given for {self.scene.driven_loads} driven loads."
             )
-        for name, profile in zip(self.scene.arm.cable_names, self.tension, strict=False):
-            if not isinstance(profile, tuple) and lowest(profile) < 0:
+        if self.scene.arm.base_moves or self.base_motion:
+            self._check_base()
+        for cable, profile in zip(self.scene.arm.cables, self.tension, strict=False):
+            name, pulled = cable.name, not cable.driven_by_length
+            if pulled and not isinstance(profile, tuple) and lowest(profile) < 0:
                 raise InputError(
                     f"cable '{name}': a cable cannot push; its tension comes down to {lowest(profile):g} N."
                 )
@@ -175,6 +181,33 @@ class Scenario:
         elif not all(isinstance(profile, Constant) for profile in self.profiles):
             raise InputError('an "equilibrium" study takes one number for each tension and load factor.')
 
+    def _check_base(self) -> None:
+        arm = self.scene.arm
+        if not (arm.base_moves and len(self.base_motion) == len(arm.base_pose)):
+            raise InputError(
+                f"{len(self.base_motion)} profiles given for the motion of a base that "
+                f"{'moves' if arm.base_moves else 'does not move'}. Give x, y and angle of one that moves."
+            )
+        if not isinstance(self.study, MotionStudy):
+            raise InputError(
+                f'a base that moves belongs to a study of motion; this is "{self.study.kind}". '
+                "Give numbers for its x, y and angle."
+            )
+        for name, unit, start, profile in zip(
+            ("x", "y", "angle"), ("m", "m", "rad"), arm.base_pose, self.base_motion, strict=True
+        ):
+            check_smooth(profile, f"[base] {name}", unit)
+            if profile.initial != start:
+                raise InputError(
+                    f"[base] {name}: the arm's base is at {start:g} {unit}, its motion starts at "
+                    f"{profile.initial:g}. Give one number for both."
+                )
+        if arm.core_density is None and (arm.subsegments > 1 or self.chooses_mesh):
+            raise InputError(
+                "a base that moves needs mass on every node, and those between disks carry none. "
+                "Give the arm's core_density."
+            )
+
     def _check_midpoint(self) -> None:
         if self.accuracy is not None:
             raise InputError(
@@ -199,12 +232,28 @@ class Scenario:
             )
 
     @property
-    def profiles(self) -> tuple[Profile, ...]:
-        """What drives a motion, or constants for an equilibrium: tensions, then factors of loads."""
+    def profiles(self) -> tuple[InPieces, ...]:
+        """What drives a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
         profiles = tuple(p for p in self.tension if not isinstance(p, tuple))
         if len(profiles) != len(self.tension):
             raise InputError(f'lists of tensions belong to a "ramp" study; this is "{self.study.kind}".')
-        return profiles + self.load_factors
+        return (*profiles, *self._others(profiles))
+
+    def _others(self, drives: tuple[Any, ...]) -> tuple[InPieces, ...]:
+        """What drives a motion beside its cables, and the rates of those that are driven by length."""
+        pose, motion = self._of_base
+        drawn_in = (drives[number] for number in self.scene.driven_by_length)
+        rates = (Constant(0.0) if isinstance(drive, tuple) else Rate(drive) for drive in drawn_in)
+        return (*self.load_factors, *pose, *rates, *motion)
+
+    @property
+    def _of_base(self) -> tuple[tuple[InPieces, ...], tuple[InPieces, ...]]:
+        """Its pose; and where it moves its velocities and its accelerations."""
+        arm = self.scene.arm
+        if not arm.base_moves:
+            return (() if arm.base is None else tuple(map(Constant, arm.base_pose))), ()
+        velocities = tuple(map(Rate, self.base_motion))
+        return self.base_motion, (*velocities, *map(Rate, velocities))
 
     @property
     def ramps(self) -> tuple[tuple[float, ...], ...]:
@@ -242,6 +291,6 @@ class Scenario:
 
     @property
     def initial_tension(self) -> np.ndarray:
-        """Inputs of the equilibrium that a study starts from: tensions, N, then factors of loads."""
-        given = (*self.tension, *self.load_factors)
+        """Inputs of the equilibrium that a study starts from, in the order of ``Scene.inputs``."""
+        given = (*self.tension, *self._others(self.tension))
         return np.array([t[0] if isinstance(t, tuple) else t.initial for t in given], dtype=float)

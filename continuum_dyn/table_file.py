@@ -11,7 +11,7 @@ from statics.errors import InputError
 
 
 def read_table(scenario: Path, name: str, quantity: str) -> Table:
-    """Read a table profile: CSV with the header ``time,tension`` (s, N) or ``time,factor``.
+    """Read a table profile: CSV with the header ``time,tension`` (s, N), ``time,factor`` or the like.
 
     Raises ``InputError`` that names the table and the row that is wrong.
     """

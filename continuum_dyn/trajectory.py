@@ -12,15 +12,19 @@ from statics.equilibria import shape_of
 class Trajectory:
     """A motion at its samples; SI units.
 
-    ``time`` and energies have shape (samples,), ``tension`` (samples, cables), ``load_factor`` (samples,
-    driven loads) or None, coordinates, curvature and length (samples, segments), poses (samples, disks).
+    ``time`` and energies have shape (samples,), ``inputs`` (samples, inputs) as ``Scene.inputs`` names them,
+    ``tension`` and ``cable_displacement``, both at the base, (samples, cables), ``load_factor`` (samples,
+    driven loads) or None, the base's pose (samples,) or None in an arm without ``base``, coordinates,
+    curvature and length (samples, segments), poses (samples, disks).
     ``elongation`` and its rate are None in a scene without extension. ``ledger`` holds energies (J), powers
     (W), and the integrals ``input_work`` and ``dissipated_energy`` (J) by glossary name. ``counters`` are the
     solver's: steps, evaluations, Jacobians, decompositions.
     """
 
     time: np.ndarray
+    inputs: np.ndarray
     tension: np.ndarray
+    cable_displacement: np.ndarray
     load_factor: np.ndarray | None
     bend_angle: np.ndarray
     bend_angle_rate: np.ndarray
@@ -34,16 +38,14 @@ class Trajectory:
     tip_speed: np.ndarray
     ledger: dict[str, np.ndarray]
     counters: dict[str, int] = field(default_factory=dict)
+    base_x: np.ndarray | None = None
+    base_y: np.ndarray | None = None
+    base_theta: np.ndarray | None = None
 
     @property
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk at the last sample."""
         return float(self.disk_x[-1, -1]), float(self.disk_y[-1, -1]), float(self.disk_theta[-1, -1])
-
-    @property
-    def inputs(self) -> np.ndarray:
-        """What drove the motion at its samples: tensions, then factors of loads; shape (samples, inputs)."""
-        return self.tension if self.load_factor is None else np.hstack([self.tension, self.load_factor])
 
     def finite(self) -> "Trajectory":
         """The samples before the first one that has a number which is not finite."""
@@ -71,15 +73,15 @@ def trajectory_of(
 ) -> Trajectory:
     """The trajectory of states (samples, size) at those times under inputs (samples, inputs)."""
     arm = dynamics.scene.arm
-    cables = dynamics.scene.cables
     seen = dynamics.observe(states, inputs)
     q, u = seen.coordinates, seen.rates
     extends = dynamics.dofs == 2
     elongation = q[:, :, 1] if extends else None
+    input_work = states[:, -2] + seen.transport_energy
     return Trajectory(
         time=times,
-        tension=inputs[:, :cables],
-        load_factor=inputs[:, cables:] if dynamics.scene.driven_loads else None,
+        inputs=inputs,
+        **dynamics.scene.driven_by(inputs, seen.disk_x, seen.disk_y, seen.disk_theta),
         bend_angle=q[:, :, 0],
         bend_angle_rate=u[:, :, 0],
         elongation=elongation,
@@ -89,6 +91,6 @@ def trajectory_of(
         disk_y=seen.disk_y,
         disk_theta=seen.disk_theta,
         tip_speed=seen.tip_speed,
-        ledger=seen.ledger | {"input_work": states[:, -2], "dissipated_energy": states[:, -1]},
+        ledger=seen.ledger | {"input_work": input_work, "dissipated_energy": states[:, -1]},
         counters=counters,
     )

@@ -11,6 +11,7 @@ from typing import Any
 
 import sympy as sp
 
+from continuum_dyn.transport import with_transport
 from statics.scene import Scene
 from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols
 from statics.virtual_work import (
@@ -44,12 +45,12 @@ def partial_velocity(
 
 def derive_dynamics(scene: Scene) -> SceneForces:
     """Forces, energies and powers of all effects of the scene."""
-    return derive(scene, _in_motion)
+    return derive(scene, _on_moving_base if scene.arm.base_moves else _in_motion)
 
 
 def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
     force = _total(groups, at)
-    loads = _total([group for group in groups if group[0].account != "kinetic_energy"], at)
+    loads = _loads(groups, at)
     still = loads.subs(dict.fromkeys(at.rates, 0))
     mass, damping = -force.jacobian(at.accelerations), -loads.jacobian(at.rates)
     energies = by_account(
@@ -64,6 +65,18 @@ def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -
     if "dissipated_power" in powers:
         powers["dissipated_power"] *= -1
     return Forces(force, mass, damping, -still.jacobian(at.coordinates), energies, powers)
+
+
+def _on_moving_base(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+    part = _in_motion(groups, at)
+    if isinstance(at, SegmentSymbols | SpanSymbols):
+        return part
+    return with_transport(part, _loads(groups, at), at)
+
+
+def _loads(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> sp.Matrix:
+    """Generalized forces of all but inertia."""
+    return _total([group for group in groups if group[0].account != "kinetic_energy"], at)
 
 
 def _total(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> sp.Matrix:

@@ -1,6 +1,6 @@
 """Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
 
-from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable, Each, Payload
+from statics.arm import RONE2012_HOLE_OFFSET, Arm, Base, Cable, Each, Payload
 from statics.effects import Bending, CableFriction, Cables, DiskLoad, DiskLoads, Extension, Gravity
 from statics.effects.cables import disk_loads
 from statics.equilibria import Equilibrium, StaticSolver, equilibrium, tension_ramp
@@ -11,6 +11,7 @@ from statics.scene import Scene
 __all__ = [
     "RONE2012_HOLE_OFFSET",
     "Arm",
+    "Base",
     "Bending",
     "Cable",
     "CableFriction",

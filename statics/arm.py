@@ -111,6 +111,19 @@ class Payload:
     offset: Vector = (0.0, 0.0)
 
 
+@dataclass(frozen=True, config=STRICT)
+class Base:
+    """Where the arm is mounted: the core starts at (x, y), m, at an ``angle`` (rad) to the x axis.
+
+    One that ``moves`` is there at the start, and what it does then is an input of the motion.
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    angle: float = 0.0
+    moves: bool = False
+
+
 RONE2012: dict[str, Any] = {
     # Rone and Ben-Tzvi 2012, Table 1. In-plane rotation is about a disk's diameter: I_xx, not I_zz.
     "disks": 4,  # n
@@ -133,8 +146,9 @@ class Arm:
 
     ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` puts
     the core's own mass on the nodes, half of each segment's on either end; ``disk_mass`` is then a disk's
-    alone. Raises ``InputError`` for cables and payloads that do not fit, ``pydantic.ValidationError`` (a
-    ``ValueError``) for numbers of the wrong kind or sign.
+    alone. Without a ``base`` the core starts at the origin, along x. Raises ``InputError`` for cables and
+    payloads that do not fit, ``pydantic.ValidationError`` (a ``ValueError``) for numbers of the wrong kind or
+    sign.
     """
 
     disks: DiskNumber
@@ -150,6 +164,7 @@ class Arm:
     each: Each = field(default=Each())
     cables: Annotated[tuple[Cable, ...], Field(strict=False)] = field(default=())
     payloads: Annotated[tuple[Payload, ...], Field(strict=False)] = field(default=())
+    base: Base | None = None
 
     def __post_init__(self) -> None:
         if self.segments > MAX_SEGMENTS:
@@ -237,6 +252,16 @@ class Arm:
     def disk_nodes(self) -> slice:
         """Those nodes, of all in a row, that are disks."""
         return slice(self.subsegments - 1, None, self.subsegments)
+
+    @property
+    def base_pose(self) -> tuple[float, float, float]:
+        """x, y (m) and angle (rad) of the base, at the start of a motion if it moves."""
+        return (0.0, 0.0, 0.0) if self.base is None else (self.base.x, self.base.y, self.base.angle)
+
+    @property
+    def base_moves(self) -> bool:
+        """Whether the base moves."""
+        return self.base is not None and self.base.moves
 
     @property
     def total_length(self) -> float:

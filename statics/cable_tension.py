@@ -42,13 +42,33 @@ def _stretch(cable: CableSymbols) -> Any:
     return length - rest + symbol(f"cable_displacement_{cable.number}")
 
 
-def drive_energy(cables: list[CableSymbols]) -> Any:
-    """Energy (J) of the stretched cables less what a constant tension's potential would be, T_0 Lambda_1."""
+def stored_in_cables(cables: list[CableSymbols]) -> Any:
+    """Elastic energy (J) of the cables that are driven by their length."""
     total: Any = 0.0
     for cable in cables:
         if cable.kind.driven_by_length:
-            tension, length = drive_tension(cable), symbol(f"length_beyond_{cable.number}")
-            total += tension**2 / (2 * symbol(f"cable_stiffness_{cable.number}")) - tension * length
+            total += drive_tension(cable) ** 2 / (2 * symbol(f"cable_stiffness_{cable.number}"))
+    return total
+
+
+def drive_potential(cables: list[CableSymbols]) -> Any:
+    """That energy less what a constant tension's potential would be, T_0 Lambda_1."""
+    total = stored_in_cables(cables)
+    for cable in cables:
+        if cable.kind.driven_by_length:
+            total -= drive_tension(cable) * symbol(f"length_beyond_{cable.number}")
+    return total
+
+
+def drive_power(cables: list[CableSymbols]) -> Any:
+    """Power (W) put into such cables less what a constant tension's would be, -T_0 Lambda_1'."""
+    total: Any = 0.0
+    for cable in cables:
+        if cable.kind.driven_by_length:
+            drawing, length = (
+                symbol(f"{name}_{cable.number}") for name in ("cable_displacement_rate", "length_beyond_rate")
+            )
+            total += drive_tension(cable) * (drawing + length)
     return total
 
 

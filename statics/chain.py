@@ -29,11 +29,15 @@ def clearance_sweep(q: np.ndarray, segments: np.ndarray) -> float:
     return carried[0]
 
 
-def residual_sweep(disks: np.ndarray, chain: np.ndarray, residual: np.ndarray) -> None:
-    """Inwards: the residual S^T (f, N) - Q of every segment, from what the outward sweep left."""
+def residual_sweep(disks: np.ndarray, chain: np.ndarray, residual: np.ndarray) -> "Carried":
+    """Inwards: the residual S^T (f, N) - Q of every segment, from what the outward sweep left.
+
+    What comes back begins with the wrench of the base on the arm: force (N) and torque about the base (N m).
+    """
     carried = RESIDUAL_START
     for i in range(residual.shape[0] - 1, -1, -1):
         carried = residual_step(i, carried, disks, chain, residual)
+    return carried
 
 
 def eliminate_sweep(

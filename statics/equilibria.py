@@ -7,20 +7,21 @@ not stable, the outcome says so. Under loads without a potential statics alone c
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 
 from statics import codegen, search
 from statics.arm import Arm
 from statics.effects.cable_friction import FAR, SLIP_PART
-from statics.effects.cables import cable_lengths, drive_tensions
+from statics.effects.cables import Poses, cable_lengths
 from statics.outcome import Outcome
 from statics.scene import Scene
 from statics.statics_kernel import RECIPE
 
 MAX_ITERATIONS = 200
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
-"""Slip lengths over the arm's length that a search with friction goes through: from soft to as it should be."""
+"""Slip lengths over the arm's length that a search with friction goes through, from soft to what they are."""
 
 _OUTCOMES = {
     search.STABLE: Outcome.COMPLETED,
@@ -36,13 +37,15 @@ class Equilibrium:
     """An arm at rest under ``tension``, or the search for it where ``found`` is False.
 
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
-    loads,) or None; ``elongation`` is None in a scene without extension; SI units. ``residual`` is the
-    largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where it is not known:
-    under loads without a potential, until the modes of small motion have been asked.
+    loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
+    ``base``; SI units. ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
+    ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
+    it is not known: under loads without a potential, until the modes of small motion have been asked.
     """
 
     outcome: Outcome
     tension: np.ndarray
+    cable_displacement: np.ndarray
     load_factor: np.ndarray | None
     bend_angle: np.ndarray
     elongation: np.ndarray | None
@@ -56,6 +59,9 @@ class Equilibrium:
     unstable_directions: int | None
     iterations: int
     residual: float
+    base_x: float | None = None
+    base_y: float | None = None
+    base_theta: float | None = None
 
     @property
     def found(self) -> bool:
@@ -73,6 +79,14 @@ class Equilibrium:
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk."""
         return float(self.disk_x[-1]), float(self.disk_y[-1]), float(self.disk_theta[-1])
+
+    @property
+    def poses(self) -> Poses:
+        """Those of the base and all disks."""
+        base = (0.0 if value is None else value for value in (self.base_x, self.base_y, self.base_theta))
+        of_disks = zip(base, (self.disk_x, self.disk_y, self.disk_theta), strict=True)
+        x, y, theta = (np.append(start, values) for start, values in of_disks)
+        return x, y, theta
 
     @property
     def coordinates(self) -> np.ndarray:
@@ -108,8 +122,8 @@ class StaticSolver:
     ) -> Equilibrium:
         """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default.
 
-        ``inputs`` are the scene's: of its cables, then the factors of driven loads. ``before`` is where the
-        arm comes from, or which way its cables last slipped: only friction asks for it.
+        ``inputs`` are the scene's, ``Scene.inputs``; those of a base's motion play no part. ``before`` is
+        where the arm comes from, or which way its cables last slipped: only friction asks for it.
         """
         arm = self.scene.arm
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
@@ -126,10 +140,7 @@ class StaticSolver:
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(
             outcome=_OUTCOMES[ended],
-            tension=drive_tensions(arm, inputs, disk_x, disk_y, disk_theta)
-            if self.scene.cables
-            else inputs[:0],
-            load_factor=inputs[self.scene.cables :] if self.scene.driven_loads else None,
+            **self.scene.driven_by(inputs, disk_x, disk_y, disk_theta),
             bend_angle=q[:, 0],
             elongation=elongation,
             **shape_of(arm, q[:, 0], elongation),
@@ -151,7 +162,7 @@ class StaticSolver:
         if isinstance(before, Slip):
             lengths = [np.full(arm.disks, before * FAR * arm.total_length) for _ in arm.cables]
         else:
-            ways = cable_lengths(arm, before.disk_x, before.disk_y, before.disk_theta)
+            ways = (cable_lengths(cable, before.poses) for cable in arm.cables)
             lengths = [np.pad(np.cumsum(way[::-1])[::-1], (0, arm.disks - way.size)) for way in ways]
         for number, beyond in enumerate(lengths, start=1):
             self._set(f"length_before_{number}", np.repeat(beyond, arm.subsegments))
@@ -173,12 +184,18 @@ class StaticSolver:
                 start, before = points[-1].coordinates, points[-1]
         return points
 
+    def branches(self, inputs: np.ndarray, near: Equilibrium) -> list[Equilibrium]:
+        """Equilibria between which cables that rub may leave the arm, searched from one; else that one."""
+        if not any(kind.rubs for kind in self.scene.cable_kinds):
+            return [near]
+        return [self.solve(inputs, near.coordinates, slip) for slip in Slip]
+
     def warm_up(self) -> None:
         """Compile the kernel, or load it compiled, so that what follows is solving alone."""
         self.solve(np.zeros(len(self.scene.inputs)))
 
 
-def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, np.ndarray]:
+def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, Any]:
     """Curvature (1/m) and length (m) of segments, the paper's k and L, from their coordinates."""
     length = arm.rest_lengths + (np.zeros_like(bend_angle) if elongation is None else elongation)
     return {"curvature": bend_angle / length, "length": length}

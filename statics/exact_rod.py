@@ -94,22 +94,26 @@ class _Rod:
 def exact_rod(scene: Scene, tension: object = None) -> RodShape:
     """The exact rod of this scene at rest under these tensions, shape (cables,), N.
 
-    A cantilever from the origin along +x, followed from no load to the full loads as long as it is
+    A cantilever from the arm's base, followed from no load to the full loads as long as it is
     stable. Effects that exist in motion only play no part. Raises ``InputError`` for tensions that do
-    not fit and for effects that the rod does not know, ``RodError`` where it buckles, snaps or comes to
+    not fit and for what the rod does not know, ``RodError`` where it buckles, snaps or comes to
     the end of its geometry before the full loads are on.
     """
     values = scene.check_tension(tension)[: scene.cables]
+    if scene.arm.base_moves:
+        raise InputError("the exact rod stands on a base that does not move.")
     _check(scene.at_rest)
     rod = _rod(scene, values)
     loads = _follow_loads(rod)
     ends = _piece_ends(rod, loads)
     pose = _node_poses(ends)[rod.parts :: rod.parts]
+    base_x, base_y, base_theta = scene.arm.base_pose
+    x, y = _turned(pose[:, :2] * rod.length, np.array([0.0, 0.0, base_theta])).T
     unbalanced = _unbalance(rod, loads, ends) * (rod.force, rod.force, rod.force * rod.length)
     return RodShape(
-        disk_x=pose[:, 0] * rod.length,
-        disk_y=pose[:, 1] * rod.length,
-        disk_theta=pose[:, 2],
+        disk_x=base_x + x,
+        disk_y=base_y + y,
+        disk_theta=base_theta + pose[:, 2],
         residual=float(np.abs(unbalanced).max()),
     )
 
@@ -163,7 +167,7 @@ def _given(number: float | None) -> float:
 
 
 def _dead_load(scene: Scene) -> np.ndarray:
-    """Weights and dead loads of the disks: force and moment, shape (disks, 3), N and N m."""
+    """Weights and dead loads of the disks, in base axes: force and moment, shape (disks, 3), N and N m."""
     total = np.zeros((scene.arm.disks, 3))
     for effect in scene.effects:
         if isinstance(effect, Gravity):
@@ -171,6 +175,7 @@ def _dead_load(scene: Scene) -> np.ndarray:
         if isinstance(effect, DiskLoads):
             for load in effect.loads:
                 total[load.disk - 1] += (*load.force, load.moment)
+    total[:, :2] = _turned(total[:, :2], np.array([0.0, 0.0, -scene.arm.base_pose[2]]))
     return total
 
 

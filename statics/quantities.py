@@ -46,6 +46,19 @@ payload_inertia      | I_p   | kg m^2 | moment of inertia of a disk's payload ab
 payload_offset_x     | d_x   | m      | from a disk's centre to its payload's, along the core's tangent
 payload_offset_y     | d_y   | m      | from a disk's centre to its payload's, along the disk's y axis
 
+x                    | -     | m      | x of the base
+y                    | -     | m      | y of the base
+angle                | -     | rad    | direction in which the core starts at the base, against the x axis
+base_x               | x_b   | m      | x of the base
+base_y               | y_b   | m      | y of the base
+base_theta           | theta_b | rad  | angle of the base's normal against the x axis
+base_velocity_x      | v_bx  | m/s    | velocity of the base along x
+base_velocity_y      | v_by  | m/s    | velocity of the base along y
+base_angular_velocity | omega_b | rad/s | angular velocity of the base
+base_acceleration_x  | a_bx  | m/s^2  | acceleration of the base along x
+base_acceleration_y  | a_by  | m/s^2  | acceleration of the base along y
+base_angular_acceleration | alpha_b | rad/s^2 | angular acceleration of the base
+
 rest_length          | L_0   | m      | undeformed length L0 of a segment
 node_mass            | m     | kg     | mass at a segment's end: the disk's, if there is one, and the core's
 node_inertia         | I     | kg m^2 | moment of inertia at a segment's end
@@ -59,6 +72,16 @@ anchor               | -     | 1      | number of the disk where a cable ends
 cable_passes         | b     | 1      | 1 on segments whose end has a hole that a cable passes, 0 elsewhere
 tension              | tau   | N      | tension of a cable
 cable_length         | l     | m      | length of a cable from hole to hole
+cable_displacement   | delta | m      | length of a cable drawn in at the base, against the unloaded arm
+cable_displacement_rate | delta' | m/s | speed at which a cable is drawn in at the base
+cable_stiffness      | k_c   | N/m    | tension of a cable that is driven by its length, over its stretch
+cable_rest_length    | Lambda_0 | m   | length of a cable from the base to its anchor in the unloaded arm
+friction             | mu    | 1      | coefficient of friction of a cable at its holes
+slip_speed           | v_s   | m/s    | speed of slip at which friction is three quarters of its most
+slip_length          | l_s   | m      | slip from rest at which friction is three quarters of its most
+length_beyond        | Lambda | m     | length of a cable from a hole to its anchor
+length_before        | Lambda' | m    | that length in the equilibrium that the arm comes from
+tension_lost         | -     | N      | what friction has taken of a cable's tension on the way from the base
 acceleration         | -     | m/s^2  | acceleration of gravity, a vector in the plane
 gravity_x            | g_x   | m/s^2  | acceleration of gravity along x
 gravity_y            | g_y   | m/s^2  | acceleration of gravity along y
@@ -99,9 +122,9 @@ unstable_directions  | -     | 1      | number of independent directions in whic
 residual             | -     | N      | largest unbalanced generalized force, N or N m
 kinetic_energy       | -     | J      | kinetic energy of the masses
 elastic_energy       | -     | J      | energy stored in what is elastic: the core, by bending and extension
-gravity_energy       | -     | J      | potential energy of the masses, zero at the base's height
-input_power          | -     | W      | power of the cables and of the loads on disks
-dissipated_power     | -     | W      | power lost to damping
+gravity_energy       | -     | J      | potential energy of the masses, zero at the origin
+input_power          | -     | W      | power of cables, of loads on disks and of a base that moves
+dissipated_power     | -     | W      | power lost to damping and friction
 input_work           | -     | J      | time integral of the input power since the start
 mode                 | -     | 1      | number of a mode of small motion, the lowest first
 frequency            | f     | Hz     | frequency of a mode without its damping

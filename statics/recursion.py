@@ -16,12 +16,12 @@ what is carried inwards belongs to two poses, that of the segment's near node an
 span's start, with blocks of 6x6 instead of 3x3; at the span's first segment the two are one, and merge.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy as sp
 
-from statics.cable_tension import along_cables, drive_energy
+from statics.cable_tension import along_cables, drive_potential, stored_in_cables
 from statics.segment import CableSymbols, symbol
 from statics.trace import Trace
 from statics.virtual_work import SceneForces
@@ -31,8 +31,9 @@ from statics.virtual_work import SceneForces
 class Step:
     """What one segment contributes to a sweep.
 
-    ``results`` and ``carried`` map a name to its value before the first segment and after this one;
-    results are what the sweep returns. ``arrays`` are the step's arguments, ``stores`` those that it
+    ``results`` and ``carried`` map a name to its value before the first segment and after this one, the
+    former a number or, in a step that takes ``inputs``, an expression of them; results are what the sweep
+    returns. ``arrays`` are the step's arguments, ``stores`` those that it
     writes, one column for each expression.
     """
 
@@ -40,8 +41,8 @@ class Step:
     doc: str
     arrays: tuple[str, ...]
     trace: Trace
-    results: dict[str, tuple[float, Any]] = field(default_factory=dict)
-    carried: dict[str, tuple[float, Any]] = field(default_factory=dict)
+    results: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+    carried: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     stores: dict[str, list[Any]] = field(default_factory=dict)
 
 
@@ -98,8 +99,14 @@ def reach_of(forces: SceneForces, trace: Trace | None = None) -> Reach:
     )
 
 
-def turn_frame(trace: Trace, forces: SceneForces) -> dict[str, tuple[float, Any]]:
+def at_base(forces: SceneForces, name: str) -> Any:
+    """A coordinate, velocity or acceleration of the base: the input of that name if there is one, or zero."""
+    return symbol(name) if name in forces.inputs else 0.0
+
+
+def turn_frame(trace: Trace, forces: SceneForces) -> dict[str, tuple[Any, Any]]:
     """Cosine and sine of the far disk's angle by angle addition, kept on the unit circle."""
+    theta = at_base(forces, "base_theta")
     d, length = forces.segment.displacement, forces.segment.length
     chord = trace.let("half_chord", (d / length).applyfunc(sp.cancel))
     half = forces.segment.half_angle
@@ -110,8 +117,8 @@ def turn_frame(trace: Trace, forces: SceneForces) -> dict[str, tuple[float, Any]
     far_sin = trace.let("far_sine", sine * turn_cos + cosine * turn_sin)
     onto_circle = trace.let("onto_circle", (3 - far_cos**2 - far_sin**2) / 2)
     return {
-        "cosine": (1.0, trace.let("next_cosine", far_cos * onto_circle)),
-        "sine": (0.0, trace.let("next_sine", far_sin * onto_circle)),
+        "cosine": (sp.cos(theta) if theta else 1.0, trace.let("next_cosine", far_cos * onto_circle)),
+        "sine": (sp.sin(theta) if theta else 0.0, trace.let("next_sine", far_sin * onto_circle)),
     }
 
 
@@ -124,7 +131,10 @@ def far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str,
     far_x = trace.let("far_x", x + reach.whole[0])
     far_y = trace.let("far_y", y + reach.whole[1])
     far_theta = trace.let("far_theta", theta + forces.segment.bend_angle)
-    carried = {"near_x": (0.0, far_x), "near_y": (0.0, far_y), "near_theta": (0.0, far_theta)}
+    carried = {
+        f"near_{name}": (at_base(forces, f"base_{name}"), far)
+        for name, far in (("x", far_x), ("y", far_y), ("theta", far_theta))
+    }
     at_disk: dict[Any, Any] = dict(zip(forces.disk.coordinates, (far_x, far_y, far_theta), strict=True))
     turns = {sp.cos(forces.disk.angle): "next_cosine", sp.sin(forces.disk.angle): "next_sine"}
     return carried, at_disk | {turn: symbol(name) for turn, name in turns.items()}
@@ -180,8 +190,8 @@ def _smallest(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> Any:
 
 
 def clearance_step(forces: SceneForces) -> Step:
-    """How far the arm is from a geometric limit."""
-    trace = Trace()
+    """How far the arm is from a geometric limit, wherever its base is."""
+    trace, forces = Trace(), replace(forces, inputs=())
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach_of(forces, trace))
     ends, at = span_ends(trace, forces, frame, at_disk)
@@ -222,7 +232,7 @@ def _potential(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> dict[st
     energy = trace.let(
         "added_potential", sum(trace.let(f"{name}_potential", value) for name, value in energies)
     )
-    drive = drive_energy(forces.coupled)
+    drive = drive_potential(forces.coupled)
     return {
         "potential": (drive, symbol("potential") + energy),
         "potential_scale": (sp.Abs(drive), symbol("potential_scale") + sp.Abs(energy)),
@@ -274,24 +284,27 @@ def _mirrored(value: sp.Matrix) -> sp.Matrix:
 
 
 def observe_step(forces: SceneForces) -> Step:
-    """Outwards, at rest: poses of the nodes and the energies of the core and of the weight."""
+    """Outwards, at rest: poses of the nodes, energies of what is elastic and of the weight."""
     trace = Trace()
     reach = reach_of(forces, trace)
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
+    ends, at = span_ends(trace, forces, frame, at_disk)
     energies = {
-        name: forces.on_segment.energies.get(name, 0) + placed(forces.on_disk.energies.get(name, 0), at_disk)
+        name: sum(placed(part.energies.get(name, 0), at) for part in forces.places.values())
         for name in ("elastic_energy", "gravity_energy")
     }
+    at_start = {"elastic_energy": stored_in_cables(forces.coupled)}
     return Step(
         "observe_step",
         "Outwards, at rest: poses of the disks, elastic and gravity energy.",
         ("q", "inputs", "segments", "disks", "pose"),
         trace,
         results={
-            name: (0.0, symbol(name) + trace.let(f"added_{name}", value)) for name, value in energies.items()
+            name: (at_start.get(name, 0.0), symbol(name) + trace.let(f"added_{name}", value))
+            for name, value in energies.items()
         },
-        carried=frame | pose,
+        carried=frame | pose | ends,
         stores={"pose": [at_disk[coordinate] for coordinate in forces.disk.coordinates]},
     )
 

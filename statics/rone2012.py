@@ -62,6 +62,8 @@ class PrintedArm:
         arm = self.scene.arm
         if tuple(effect.name for effect in self.scene.at_rest.effects) != EFFECTS:
             raise InputError(f"the printed equations have these effects, all of them: {', '.join(EFFECTS)}.")
+        if arm.base is not None:
+            raise InputError("the printed equations have the base at the origin, along x: leave out base.")
         if arm.subsegments > 1 or arm.core_density is not None or arm.reference_curvature:
             raise InputError(
                 "the printed equations have one segment from disk to disk, straight at rest, "

@@ -2,14 +2,23 @@
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from statics.arm import Arm, CableKind
 from statics.effects import DiskLoads, Effect
+from statics.effects.cables import Poses, cable_lengths
 from statics.errors import InputError, did_you_mean
+
+BASE_POSE = ("base_x", "base_y", "base_theta")
+BASE_MOTION = (
+    *("base_velocity_x", "base_velocity_y", "base_angular_velocity"),
+    *("base_acceleration_x", "base_acceleration_y", "base_angular_acceleration"),
+)
+"""The first and the second derivatives of the base's pose."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +53,11 @@ class Scene:
 
     @property
     def at_rest(self) -> "Scene":
-        """The same scene with only those effects that act at rest."""
-        return Scene(self.arm, (effect for effect in self.effects if effect.acts_at_rest))
+        """The same scene with only those effects that act at rest, on a base that does not move."""
+        arm = self.arm
+        if arm.base is not None and arm.base.moves:
+            arm = replace(arm, base=replace(arm.base, moves=False))
+        return Scene(arm, (effect for effect in self.effects if effect.acts_at_rest))
 
     def without(self, name: str) -> "Scene":
         """The same scene without the effect of that name."""
@@ -75,16 +87,54 @@ class Scene:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the numbers that drive the scene: of its cables, then factors of driven loads.
+        """Names of the numbers that drive the scene.
 
-        A cable's is its tension, or its displacement where that is given.
+        Of its cables the tensions, or displacements where those are given, factors of driven loads, the pose
+        of a base if the arm has one, the rates of those displacements, and the motion of a base that moves.
         """
         tensions = (
             f"{'cable_displacement' if kind.driven_by_length else 'tension'}_{number}"
             for number, kind in enumerate(self.cable_kinds, start=1)
         )
         factors = (f"load_factor_{number}" for number in range(1, self.driven_loads + 1))
-        return (*tensions, *factors)
+        pose = () if self.arm.base is None else BASE_POSE
+        rates = (f"cable_displacement_rate_{number + 1}" for number in self.driven_by_length)
+        return (*tensions, *factors, *pose, *rates, *(BASE_MOTION if self.arm.base_moves else ()))
+
+    @property
+    def driven_by_length(self) -> list[int]:
+        """Places, from 0 on, of the cables whose displacement is given."""
+        return [number for number, kind in enumerate(self.cable_kinds) if kind.driven_by_length]
+
+    def driven_by(
+        self, inputs: np.ndarray, disk_x: np.ndarray, disk_y: np.ndarray, disk_theta: np.ndarray
+    ) -> dict[str, Any]:
+        """Inputs, shape (..., inputs), by glossary name, and what follows from the poses, (..., disks).
+
+        ``tension`` and ``cable_displacement`` have shape (..., cables); ``load_factor`` (..., driven loads)
+        and the base's pose (...,) are None where the scene has none.
+        """
+        drives, factor, pose, _ = np.split(
+            inputs, np.cumsum([self.cables, self.driven_loads, len(BASE_POSE)]), axis=-1
+        )
+        base: Any = np.moveaxis(pose, -1, 0) if self.arm.base else np.zeros((3, *inputs.shape[:-1]))
+        disks = zip(base, (disk_x, disk_y, disk_theta), strict=True)
+        x, y, theta = (np.concatenate([start[..., np.newaxis], values], axis=-1) for start, values in disks)
+        known = dict(zip(BASE_POSE, base if self.arm.base else [None] * len(BASE_POSE), strict=True))
+        known |= {"load_factor": factor if self.driven_loads else None}
+        return known | self._cables_driven_by(drives, (x, y, theta))
+
+    def _cables_driven_by(self, drives: np.ndarray, poses: Poses) -> dict[str, np.ndarray]:
+        """Tension at the base and displacement of every cable, one of which is given."""
+        tension, displacement = drives.copy(), drives.copy()
+        for number, cable in enumerate(self.arm.cables[: self.cables]):
+            drawn_in = self.arm.cable_rest_length(cable) - cable_lengths(cable, poses).sum(axis=-1)
+            if cable.cable_stiffness is None:
+                displacement[..., number] = drawn_in
+            else:
+                stretch = drives[..., number] - drawn_in
+                tension[..., number] = cable.cable_stiffness * np.maximum(0.0, stretch)
+        return {"tension": tension, "cable_displacement": displacement}
 
     @property
     def payloads(self) -> int:
@@ -125,7 +175,9 @@ class Scene:
         return table
 
     def check_tension(self, tension: object) -> np.ndarray:
-        """Inputs of the scene at these tensions, shape (cables,), N; the factors of driven loads are 1.
+        """Inputs of the scene at rest under these tensions, shape (cables,), N.
+
+        The factors of driven loads are 1, and the base is where it starts.
 
         Of a cable that is driven by its length it is the displacement, m. Raises ``InputError`` unless there
         is one finite number for each cable, and no negative tension.
@@ -136,4 +188,6 @@ class Scene:
         pulls = [not kind.driven_by_length for kind in self.cable_kinds]
         if not (np.isfinite(values).all() and (values[pulls] >= 0).all()):
             raise InputError(f"tensions must be finite and not negative; given: {values.tolist()}.")
-        return np.append(values, np.ones(self.driven_loads))
+        pose = [] if self.arm.base is None else self.arm.base_pose
+        known = np.concatenate([values, np.ones(self.driven_loads), pose])
+        return np.pad(known, (0, len(self.inputs) - known.size))

@@ -37,13 +37,13 @@ any_scene = pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, bare_s
 
 def pulling(scene: Scene) -> Span:
     """Tensions that change with time, for as many cables as the scene has."""
-    pieces = np.array([[0.1, 1.3, 2.0, 0.4, 50.0], [0.0, 0.7, -1.0, 0.0, 0.0]])
+    pieces = np.array([[0.1, 1.3, 2.0, 0.4, 50.0, 0.3], [0.0, 0.7, -1.0, 0.0, 0.0, 0.0]])
     return Span(0.1, 1.0, pieces[: scene.cables])
 
 
 def tension_at(scene: Scene) -> np.ndarray:
     """Tensions of ``pulling`` at ``TIME``, written out."""
-    upper, lower = 1.3 + 2.0 * (TIME - 0.1) + 0.4 * np.sin(50.0 * TIME), 0.7 - 1.0 * TIME
+    upper, lower = 1.3 + 2.0 * (TIME - 0.1) + 0.4 * np.sin(50.0 * (TIME - 0.1) + 0.3), 0.7 - 1.0 * TIME
     return np.array([upper, lower])[: scene.cables]
 
 

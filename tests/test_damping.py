@@ -16,7 +16,7 @@ from continuum_dyn.profiles import Span
 from statics import Arm, Bending, Gravity, InputError, Scene
 from statics.effects import Effect
 
-FREE = Span(0.0, 10.0, np.empty((0, 5)))
+FREE = Span(0.0, 10.0, np.empty((0, 6)))
 ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 THICK, THIN, BY_MASS = LinearDrag(0.03, 2e-6), QuadraticDrag(0.4, 3e-8), MassDamping(12.0)
 NONE = LinearDrag(0.0), QuadraticDrag(0.0), MassDamping(0.0)

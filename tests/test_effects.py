@@ -118,7 +118,7 @@ def interpreted_rate(scene: Scene) -> np.ndarray:
     tables = (scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS))
     q, u = random_state(scene, seed=1)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
-    pieces = np.array([[0.0, 1.3, 0.0, 0.0, 0.0]])
+    pieces = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0]])
     return kernel.rate(0.0, y, pieces, *tables, len(scene.coordinates))
 
 

@@ -20,7 +20,7 @@ from statics import Arm, Bending, Gravity, InputError, Outcome, Payload, Scene, 
 from statics import statics_kernel as at_rest
 from statics.exact_rod import exact_rod
 
-PIECES = np.array([[0.0, 1.3, 0.0, 0.0, 0.0], [0.0, 0.7, 0.0, 0.0, 0.0]])
+PIECES = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0], [0.0, 0.7, 0.0, 0.0, 0.0, 0.0]])
 TENSION = PIECES[:, 1]
 
 

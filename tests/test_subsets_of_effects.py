@@ -75,7 +75,7 @@ def chain_accelerations(scene: Scene, q: np.ndarray, u: np.ndarray) -> np.ndarra
     tables = [
         scene.table(place, getattr(kernel, f"{place.upper()}_COLUMNS")) for place in ("segment", "disk")
     ]
-    pieces = np.array([[0.0, tau, 0.0, 0.0, 0.0] for tau in TENSION[: scene.cables]]).reshape(-1, 5)
+    pieces = np.array([[0.0, tau, 0.0, 0.0, 0.0, 0.0] for tau in TENSION[: scene.cables]]).reshape(-1, 6)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
     return kernel.rate(0.0, y, pieces, *tables, q.shape[1])[q.size : 2 * q.size].reshape(q.shape)
 

@@ -5,10 +5,11 @@ For a scene without dissipation. From coordinates q0 and momenta p0 a step h fin
     p(qm, v) + h/2 (r - dT/dq) - p0 = 0,   qm = q0 + h/2 v,   Newton matrix M + (h/2)^2 K
     q1 = q0 + h v,   p1 = p0 - h (r - dT/dq)
 
-with r = dV/dq, the residual at rest, and the tensions of the step's middle (Marsden and West 2001, sec. 2.3.1
-and 2.5, for alpha = 1/2). The rule is symplectic, symmetric and of order 2, so the energy's error stays
-bounded and does not grow (Hairer, Lubich and Wanner 2006, ch. VI.6 and IX.8). The same rule on (q, u) is not
-symplectic, since the mass depends on q. The matrix leaves out the velocity's own terms, which nearly cancel.
+with r = dV/dq, the residual at rest, and the tensions and the base of the step's middle (Marsden and West
+2001, sec. 2.3.1 and 2.5, for alpha = 1/2). The rule is symplectic, symmetric and of order 2, so the energy's
+error stays bounded and does not grow (Hairer, Lubich and Wanner 2006, ch. VI.6 and IX.8). The same rule on
+(q, u) is not symplectic, since the mass depends on q. The matrix leaves out the velocity's own terms, which
+nearly cancel.
 
 Arguments travel in groups:
 
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
         velocity_start,
         velocity_step,
     )
-    from statics.cable_sweep import measure_cables
+    from continuum_dyn.moving_cable_sweep import measure_moving_cables
     from statics.chain import clearance_sweep, eliminate_sweep, substitute_sweep
     from statics.generated import RESIDUAL_START, residual_step
 
@@ -60,7 +61,7 @@ def momentum_sweeps(
 ) -> float:
     """dV/dq into ``residual``, dT/du into ``momentum``, dT/dq into ``slope``; returns the power in."""
     _, segments, disks = arm
-    measure_cables(q, segments, chain)
+    measure_moving_cables(q, u, segments, chain)
     outward = velocity_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         outward = velocity_step(i, outward, q, u, inputs, segments, disks, chain)
@@ -161,11 +162,13 @@ def advance(
     return rows - 1, iterations
 
 
-def start_momenta(q: np.ndarray, u: np.ndarray, arm: "Arm", p: np.ndarray) -> None:
-    """The momenta of coordinates and rates, into ``p``."""
+def start_momenta(t: float, q: np.ndarray, u: np.ndarray, arm: "Arm", p: np.ndarray) -> None:
+    """The momenta of coordinates and rates at time t, into ``p``."""
     n, dofs = q.shape
     work, chain = np.empty((2, n, dofs)), np.empty((n, CHAIN_COLUMNS))
-    momentum_sweeps(q, u, np.zeros(INPUTS), arm, chain, work[0], p, work[1])
+    inputs = np.empty(INPUTS)
+    inputs_at(t, arm[0], inputs)
+    momentum_sweeps(q, u, inputs, arm, chain, work[0], p, work[1])
 
 
 def sample(

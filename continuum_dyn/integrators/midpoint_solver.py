@@ -49,7 +49,7 @@ class MidpointSolver(OdeSolver):
         shape = (BATCH + 1, *q.shape)
         self.records = np.empty(shape), np.empty(shape), np.empty(shape[0])
         self.records[0][0], self.records[2][0] = q, y0[-2]
-        self.kernel.start_momenta(q, u, self.arm, self.records[1][0])
+        self.kernel.start_momenta(t0, q, u, self.arm, self.records[1][0])
         self.past = np.tile(u, (PAST, 1, 1))
         self.internal_steps = 0
 

@@ -5,11 +5,16 @@ from collections.abc import Mapping
 import numpy as np
 
 
+def base_pose(columns: Mapping[str, np.ndarray], rows: np.ndarray) -> tuple[np.ndarray, ...]:
+    """x, y (m) and theta (rad) of the base, each of shape (rows, 1): zero in an arm without one."""
+    names = ("base_x", "base_y", "base_theta")
+    return tuple(columns[name][rows, None] if name in columns else np.zeros((len(rows), 1)) for name in names)
+
+
 def poses(columns: Mapping[str, np.ndarray], rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Centres, shape (rows, disks + 1, 2), m, and normals of the base and of the disks."""
-    x, y, theta = (
-        np.pad(columns[name][rows], ((0, 0), (1, 0))) for name in ("disk_x", "disk_y", "disk_theta")
-    )
+    disks = (columns[name][rows] for name in ("disk_x", "disk_y", "disk_theta"))
+    x, y, theta = (np.hstack(both) for both in zip(base_pose(columns, rows), disks, strict=True))
     return np.stack([x, y], axis=-1), np.stack([-np.sin(theta), np.cos(theta)], axis=-1)
 
 
@@ -23,8 +28,10 @@ def backbone(columns: Mapping[str, np.ndarray], rows: np.ndarray, points: int) -
     bend = columns["curvature"][rows] * length
     along = np.arange(1, points + 1) / points
     half = 0.5 * bend[..., None] * along
-    angle = (np.cumsum(bend, axis=1) - bend)[..., None] + half
+    x, y, theta = base_pose(columns, rows)
+    angle = (theta + np.cumsum(bend, axis=1) - bend)[..., None] + half
     chord = length[..., None] * along * np.sinc(half / np.pi)
     arcs = chord[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     arcs[:, 1:] += np.cumsum(arcs[:, :-1, -1], axis=1)[:, :, None]
-    return np.pad(arcs.reshape(len(rows), -1, 2), ((0, 0), (1, 0), (0, 0)))
+    base = np.stack([x, y], axis=-1)
+    return base + np.pad(arcs.reshape(len(rows), -1, 2), ((0, 0), (1, 0), (0, 0)))

@@ -109,7 +109,7 @@ def _draw_mode(axes: Any, found: RestModes, mode: Mode) -> None:
     change = (_core(found, SMALL_PART * mode.coordinates) - rest) / SMALL_PART
     reach = SHAPE_REACH * arm.total_length
     disks = slice(None, None, ARC_POINTS * arm.subsegments)
-    theta = np.append(0.0, found.rest.disk_theta)
+    theta = np.append(arm.base_pose[2], found.rest.disk_theta)
     turn = np.append(0.0, mode.shape[:, 2])
     for part, line, color, width in (
         (0.0, "-", "0.7", 1.2),
@@ -133,8 +133,10 @@ def _draw_mode(axes: Any, found: RestModes, mode: Mode) -> None:
 def _core(found: RestModes, change: np.ndarray) -> np.ndarray:
     """Points of the core, shape (points, 2), m, by a change of the coordinates from those at rest."""
     q = found.rest.coordinates + change
-    shape = shape_of(found.scenario.scene.arm, q[None, :, 0], q[None, :, 1] if q.shape[1] == 2 else None)
-    return backbone(shape, np.array([0]), ARC_POINTS)[0]
+    arm = found.scenario.scene.arm
+    shape = shape_of(arm, q[None, :, 0], q[None, :, 1] if q.shape[1] == 2 else None)
+    base = zip(("base_x", "base_y", "base_theta"), np.array(arm.base_pose)[:, None], strict=True)
+    return backbone(shape | dict(base), np.array([0]), ARC_POINTS)[0]
 
 
 def _draw_disks(axes: Any, centres: np.ndarray, theta: np.ndarray, height: float, color: str) -> None:

@@ -205,6 +205,9 @@ def _moving_lines(log: Log, story: Story, frames: np.ndarray) -> dict[str, Lines
         "arm/disks": Lines(disks, GREY, 2.0, 10.0),
         "arm/backbone": Lines(_core(story.columns, frames), BLACK, 2.5, 20.0),
     }
+    if "base_x" in story.columns:
+        base = np.stack([centre - reach, centre + reach], axis=2)[:, :1]
+        lines["arm/base"] = Lines(base, BLACK, 4.0, 25.0)
     cables = zip(log.cables, log.arm["hole_offset"], log.arm["anchor"], _colors(len(log.cables)), strict=True)
     for name, hole_offset, anchor, color in cables:
         holes = (centre + hole_offset[:, None] * normal)[:, None, : anchor + 1]
@@ -215,11 +218,10 @@ def _moving_lines(log: Log, story: Story, frames: np.ndarray) -> dict[str, Lines
 def _still_lines(log: Log, story: Story) -> dict[str, Lines]:
     rows = _spread(len(story.times), MOST_SAMPLES)
     tip = np.stack([story.columns["disk_x"][rows, -1], story.columns["disk_y"][rows, -1]], axis=-1)
-    base = _half_width(log) * np.array([[0.0, -1.0], [0.0, 1.0]])
-    lines = {
-        "arm/base": Lines(base[None, None], BLACK, 4.0, 25.0),
-        "arm/tip_trace": Lines(tip[None, None], PURPLE, 2.0, 16.0),
-    }
+    lines = {"arm/tip_trace": Lines(tip[None, None], PURPLE, 2.0, 16.0)}
+    if "base_x" not in story.columns:
+        base = _half_width(log) * np.array([[0.0, -1.0], [0.0, 1.0]])
+        lines["arm/base"] = Lines(base[None, None], BLACK, 4.0, 25.0)
     if story.timeline == "sim_time" and _ends_at_rest(log):
         last = np.array([len(log.equilibria["point"]) - 1])
         lines["arm/equilibrium"] = Lines(_core(log.equilibria, last), LIGHT_GREY, 5.0, 15.0)

@@ -32,41 +32,26 @@ class Cables:
         return {}
 
 
-def cable_ways(
-    arm: Arm, cable: Cable, disk_x: np.ndarray, disk_y: np.ndarray, disk_theta: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """A cable's straight ways from hole to hole, from the base to its anchor, shape (anchor, 2), m.
+Poses = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""x and y (m) and theta (rad) of the base and all disks, shape (..., disks + 1) each."""
 
-    Takes the poses of disks 1..n, shape (disks,), m and rad. Returns the holes' places in the disks as well,
-    as seen from the disks' centres, shape (anchor + 1, 2), m; all in base axes. Rone 2012, Eq. 22.
+
+def cable_ways(cable: Cable, poses: Poses) -> tuple[np.ndarray, np.ndarray]:
+    """A cable's straight ways from hole to hole, from the base to its anchor, shape (..., anchor, 2), m.
+
+    Returns the holes' places in base and disks as well, as seen from their centres, shape
+    (..., anchor + 1, 2), m; all in base axes. Rone 2012, Eq. 22.
     """
-    last = cable.anchor or arm.disks
-    theta = np.concatenate([[0.0], disk_theta])[: last + 1]
-    center = np.column_stack([np.concatenate([[0.0], disk_x]), np.concatenate([[0.0], disk_y])])
-    normal = np.column_stack([-np.sin(theta), np.cos(theta)])
-    r_h = cable.holes(arm.disks)[: last + 1, None] * normal
-    return np.diff(center[: last + 1] + r_h, axis=0), r_h
+    disks = poses[0].shape[-1] - 1
+    x, y, theta = (values[..., : (cable.anchor or disks) + 1] for values in poses)
+    offsets = cable.holes(disks)[: theta.shape[-1]]
+    r_h = np.stack([-offsets * np.sin(theta), offsets * np.cos(theta)], axis=-1)
+    return np.diff(np.stack([x, y], axis=-1) + r_h, axis=-2), r_h
 
 
-def cable_lengths(
-    arm: Arm, disk_x: np.ndarray, disk_y: np.ndarray, disk_theta: np.ndarray
-) -> list[np.ndarray]:
-    """Hole-to-hole lengths of every cable, each of shape (anchor,), m. Rone 2012, Eq. 23."""
-    ways = (cable_ways(arm, cable, disk_x, disk_y, disk_theta)[0] for cable in arm.cables)
-    return [np.hypot(*way.T) for way in ways]
-
-
-def drive_tensions(
-    arm: Arm, drives: np.ndarray, disk_x: np.ndarray, disk_y: np.ndarray, disk_theta: np.ndarray
-) -> np.ndarray:
-    """Tension of every cable at the base, shape (cables,), N, from its tension or displacement."""
-    lengths = cable_lengths(arm, disk_x, disk_y, disk_theta)
-    tensions = np.array(drives[: len(arm.cables)], dtype=float)
-    for number, (cable, length) in enumerate(zip(arm.cables, lengths, strict=True)):
-        if cable.cable_stiffness is not None:
-            stretch = length.sum() - arm.cable_rest_length(cable) + drives[number]
-            tensions[number] = cable.cable_stiffness * max(0.0, stretch)
-    return tensions
+def cable_lengths(cable: Cable, poses: Poses) -> np.ndarray:
+    """A cable's lengths from hole to hole, shape (..., anchor), m. Rone 2012, Eq. 23."""
+    return np.linalg.norm(cable_ways(cable, poses)[0], axis=-1)
 
 
 def disk_loads(
@@ -74,14 +59,17 @@ def disk_loads(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force and moment of the cables on each disk, as the paper writes them.
 
-    Takes tensions, shape (cables,), N, and the poses of disks 1..n, shape (disks,), m and rad. Returns
+    Takes tensions, shape (cables,), N, and the poses of disks 1..n, shape (disks,), m and rad; the base is
+    where the arm has it. Returns
     force, shape (disks, 2), N, and moment about the disk's centre, shape (disks,), N m.
     Rone 2012, Eq. 22-25.
     """
-    force = np.zeros((arm.disks, 2))
+    of_disks = zip(arm.base_pose, (disk_x, disk_y, disk_theta), strict=True)
+    x, y, theta = (np.append(base, values) for base, values in of_disks)
+    poses, force = (x, y, theta), np.zeros((arm.disks, 2))
     moment = np.zeros(arm.disks)
     for cable, tau in zip(arm.cables, tension, strict=True):
-        p_h, r_h = cable_ways(arm, cable, disk_x, disk_y, disk_theta)
+        p_h, r_h = cable_ways(cable, poses)
         pull = tau * p_h / np.linalg.norm(p_h, axis=1, keepdims=True)
         on_disk = -pull
         on_disk[:-1] += pull[1:]
