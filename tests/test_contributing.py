@@ -39,6 +39,12 @@ from continuum_dyn.modes import modes_at_rest
 print(json.dumps([[mode.frequency for mode in modes_at_rest(load_scenario(f)).modes] for f in sys.argv[1:]]))
 """
 
+QUANTITIES = """
+from statics import Arm
+from statics.effects import ElasticFoundation
+print(set(ElasticFoundation(6.0e3).columns(Arm(4, 0.02))), set(ElasticFoundation.quantities))
+"""
+
 
 class Block(NamedTuple):
     """A block of the page: a whole file, or a ``diff`` of lines to add to one."""
@@ -142,8 +148,12 @@ def test_checks_of_the_walk_through_pass(program: Path) -> None:
 def test_new_effect_is_explained_as_any_other(program: Path) -> None:
     text = command_line(program, "explain", said(r"`continuum-dyn run (\S+)` brings the tip"))
     assert "elastic_foundation on each disk" in text
-    assert "P = -c_f*y" in text
+    assert said(r"shows the pair, (P = \S+) along y") in text
     assert "foundation_stiffness (N/m): force of an elastic foundation on a node" in text
+
+
+def test_new_effect_has_a_value_for_each_of_its_quantities(program: Path) -> None:
+    assert run(program, "-c", QUANTITIES).split() == ["{'foundation_stiffness'}"] * 2
 
 
 def test_new_effect_raises_the_squares_of_all_frequencies_by_its_stiffness_over_mass(program: Path) -> None:
