@@ -157,7 +157,8 @@ def _profile(given: Any, path: Path, quantity: str) -> Profile:
 
 
 def _load(load: LoadTable) -> DiskLoad:
-    return DiskLoad(load.disk, load.force, load.moment, driven=load.factor is not None)
+    driven = load.factor is not None
+    return DiskLoad(load.disk, load.force, load.moment, driven=driven, follower=load.follower)
 
 
 def _repeated(ramps: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:

@@ -65,6 +65,11 @@ class Equilibrium:
         return self.outcome is Outcome.COMPLETED
 
     @property
+    def inputs(self) -> np.ndarray:
+        """What drives the scene here: tensions, then factors of loads."""
+        return self.tension if self.load_factor is None else np.append(self.tension, self.load_factor)
+
+    @property
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk."""
         return float(self.disk_x[-1]), float(self.disk_y[-1]), float(self.disk_theta[-1])

@@ -60,9 +60,29 @@ class Scene:
         return len(self.arm.cables) if self.has("cables") else 0
 
     @property
+    def _loads(self) -> DiskLoads:
+        return next((effect for effect in self.effects if isinstance(effect, DiskLoads)), DiskLoads())
+
+    @property
     def driven_loads(self) -> int:
         """Number of the loads that change in time."""
-        return sum(effect.driven for effect in self.effects if isinstance(effect, DiskLoads))
+        return len(self._loads.driven)
+
+    @property
+    def followers_among_driven(self) -> tuple[bool, ...]:
+        """Of every load that changes in time, whether it turns with its disk."""
+        return tuple(load.follower for load in self._loads.driven)
+
+    @property
+    def has_followers(self) -> bool:
+        """Whether some load that does not change in time turns with its disk."""
+        return self._loads.has_followers
+
+    @property
+    def without_potential(self) -> tuple[str, ...]:
+        """What acts at rest and has no potential, in words."""
+        follows = self.has_followers or any(self.followers_among_driven)
+        return ("follower loads",) if follows else ()
 
     @property
     def inputs(self) -> tuple[str, ...]:
