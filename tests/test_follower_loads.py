@@ -2,30 +2,32 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import whole_arm
+from conftest import JET, at_rest, cantilever, edited, motion
 from scipy.integrate import solve_ivp
 from whole_arm import difference_matrix, full_scene, random_state, relative_error, spanned_scene
 
-from continuum_dyn import implicit_kernel, motion_kernel
+from continuum_dyn import implicit_kernel, load_scenario, motion_kernel, simulate
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.effects import Inertia, MaterialDamping
-from continuum_dyn.stability import Growth, growth_about
+from continuum_dyn.integrators import choose
+from continuum_dyn.profiles import spans
+from continuum_dyn.study import MotionStudy, Solver
 from statics import (
     Arm,
     Bending,
     DiskLoad,
     DiskLoads,
-    Each,
-    Equilibrium,
     InputError,
     Outcome,
     Scene,
-    StaticSolver,
     codegen,
+    equilibrium,
     statics_kernel,
 )
 from statics.exact_rod import exact_rod
@@ -45,29 +47,12 @@ def inextensible(disks: int) -> Scene:
     return Scene(arm, (Bending(), Inertia(), MaterialDamping(1.2e-3)))
 
 
-def cantilever(disks: int, *loads: DiskLoad, damping: float = 0.0) -> Scene:
-    """E J = 1, length 1, mass 1 with half a disk's share at the tip: second order in the number of disks."""
-    mass = np.full(disks, 1.0 / disks)
-    mass[-1] /= 2
-    arm = Arm(
-        disks, 1.0 / disks, youngs_modulus=1.0, second_moment=1.0, each=Each(disk_mass=tuple(mass.tolist()))
-    )
-    damped = (MaterialDamping(damping),) if damping else ()
-    return Scene(arm, (Bending(), DiskLoads(loads), Inertia(), *damped))
-
-
-def at_rest(scene: Scene) -> Equilibrium:
-    """The equilibrium from straight, by kernels in plain Python."""
-    return StaticSolver(scene, codegen.load_interpreted).solve(np.empty(0))
-
-
 # ---- forces ----
 
 
 def kernel_of(scene: Scene, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
     kernel: Any = codegen.load_interpreted(scene, recipe)
-    tables = [scene.table(at, getattr(kernel, f"{at.upper()}_COLUMNS")) for at in ("segment", "disk")]
-    return kernel, *tables
+    return kernel, scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)
 
 
 def accelerations(scene: Scene, q: np.ndarray, u: np.ndarray, inputs: np.ndarray) -> np.ndarray:
@@ -99,12 +84,7 @@ def test_constant_factor_is_a_constant_follower() -> None:
     np.testing.assert_allclose(found, accelerations(constant, q, u, np.empty(0)), rtol=1e-12)
 
 
-def residual_at_rest(scene: Scene, q: np.ndarray, tension: np.ndarray) -> np.ndarray:
-    kernel, segments, disks = kernel_of(scene, statics_kernel.RECIPE)
-    return _residual(kernel, segments, disks, tension, q)
-
-
-def _residual(
+def residual_of(
     kernel: Any, segments: np.ndarray, disks: np.ndarray, tension: np.ndarray, q: np.ndarray
 ) -> np.ndarray:
     chain, residual = np.empty((len(q), kernel.CHAIN_COLUMNS)), np.empty_like(q)
@@ -128,7 +108,7 @@ def test_follower_does_work_round_a_closed_loop_and_a_dead_load_does_not() -> No
     def by_chain(scene: Scene) -> float:
         kernel, segments, disks = kernel_of(scene, statics_kernel.RECIPE)
         return round_a_loop(
-            scene, lambda q, v: -float(np.sum(_residual(kernel, segments, disks, np.empty(0), q) * v))
+            scene, lambda q, v: -float(np.sum(residual_of(kernel, segments, disks, np.empty(0), q) * v))
         )
 
     def along_the_way(q: np.ndarray, v: np.ndarray) -> float:
@@ -154,19 +134,22 @@ def test_static_newton_step_equals_the_dense_solution(scene_of: Callable[[int], 
     scene = with_followers(scene_of(3), *FOLLOWERS)
     kernel, segments, disks = kernel_of(scene.at_rest, statics_kernel.RECIPE)
     tension = np.array([1.3, 0.7])[: scene.cables]
-    unit = np.array([1.0, scene.arm.rest_length])[: len(scene.coordinates)]
+    unit, slowing = np.array([1.0, scene.arm.rest_length])[: len(scene.coordinates)], 0.02
+
+    def scaled(z: np.ndarray) -> np.ndarray:
+        return (unit * residual_of(kernel, segments, disks, tension, unit * z.reshape(-1, unit.size))).ravel()
+
     for seed in range(3):
         q, _ = random_state(scene, seed, bend=0.7)
-
-        def scaled(z: np.ndarray) -> np.ndarray:
-            return (unit * _residual(kernel, segments, disks, tension, z.reshape(q.shape) * unit)).ravel()  # noqa: B023
-
         matrix = difference_matrix(scaled, (q / unit).ravel(), np.full(q.size, 0.01))
         assert np.abs(matrix - matrix.T).max() > 1e-3 * scene.arm.rest_length
-        chain, residual, step, descent = np.empty((len(q), kernel.CHAIN_COLUMNS)), *np.empty((3, *q.shape))
+        matrix += slowing * np.eye(q.size)
+        chain = np.empty((len(q), kernel.CHAIN_COLUMNS))
+        residual, step, descent = np.empty_like(q), np.empty_like(q), np.empty_like(q)
         kernel.pose_sweep(q, tension, segments, disks, chain)
         kernel.residual_sweep(disks, chain, residual)
-        kernel.eliminate_sweep(kernel.ELIMINATE_START, segments, disks, chain, residual, descent, descent)
+        start = (slowing, *kernel.ELIMINATE_START[1:])
+        kernel.eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
         kernel.substitute_sweep(chain, descent, step)
         dense = np.linalg.solve(matrix, -(unit * residual).ravel()).reshape(q.shape) * unit
         assert relative_error(step, dense) < 1e-9
@@ -180,7 +163,8 @@ def test_implicit_newton_step_equals_the_dense_solution(scene_of: Callable[[int]
     tension = np.array([1.3, 0.7])[: scene.cables]
     q, _ = random_state(scene, seed=5, bend=0.7)
     shape, still = q.shape, np.zeros_like(q)
-    chain, residual, step, descent = np.empty((len(q), kernel.CHAIN_COLUMNS)), *np.empty((3, *shape))
+    chain = np.empty((len(q), kernel.CHAIN_COLUMNS))
+    residual, step, descent = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     unit = np.tile(np.array([1.0, scene.arm.rest_length])[: shape[1]], shape[0])
 
     def at(*state: np.ndarray) -> np.ndarray:
@@ -237,60 +221,6 @@ def test_many_segments_under_a_force_across_the_tip_are_the_elastica(across: flo
     np.testing.assert_allclose((4 * fine - coarse) / 3, exact, atol=2e-4)
 
 
-# ---- Beck's column ----
-
-BECK = 20.05
-"""Flutter load over E J / L^2 of a uniform cantilever under a tangential force at its tip (Beck 1952)."""
-
-
-def growth(disks: int, push: float, damping: float = 0.0) -> Growth | None:
-    """What grows about the straight column that a follower force pushes."""
-    scene = cantilever(disks, DiskLoad(disks, (-push, 0.0), follower=True), damping=damping)
-    rest = at_rest(scene)
-    assert np.abs(rest.bend_angle).max() == 0.0
-    return growth_about(Dynamics(scene, codegen.load_interpreted), rest)
-
-
-def flutter_load(disks: int, damping: float = 0.0) -> float:
-    low, high = 5.0, 25.0
-    while high - low > 1e-4:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if growth(disks, middle, damping) is None else (low, middle)
-    return low
-
-
-def test_column_under_a_follower_force_flutters_at_becks_load() -> None:
-    coarse, fine = flutter_load(8), flutter_load(16)
-    assert (coarse - BECK) / (fine - BECK) == pytest.approx(4.0, rel=0.1)  # second order
-    assert (4 * fine - coarse) / 3 == pytest.approx(BECK, abs=0.01)
-    found = growth(16, 1.02 * fine)
-    assert found is not None
-    assert found.modes == 1
-    assert found.frequency == pytest.approx(11.0 / (2 * np.pi), rel=0.02)  # Omega = 11.0: Beck 1952
-
-
-def test_follower_force_does_not_buckle_a_column_and_a_dead_one_does() -> None:
-    for push in (0.5, 0.99 * np.pi**2 / 4, 1.5 * np.pi**2 / 4, np.pi**2, 18.0):
-        assert growth(12, push) is None
-    dead = cantilever(12, DiskLoad(12, (-1.05 * np.pi**2 / 4, 1e-6)))
-    assert abs(at_rest(dead).tip[1]) > 0.1
-
-
-def test_little_damping_in_the_core_lowers_the_flutter_load() -> None:
-    """To 10.94 as Kelvin-Voigt damping tends to zero (Bolotin and Zhinzher 1969)."""
-    assert flutter_load(16, damping=1e-4) == pytest.approx(10.94, rel=0.01)
-
-
-def test_stability_without_damping_is_told_by_divergence_too() -> None:
-    """A dead force, taken as if nothing were known of its potential: half way between stable and not."""
-    for push, grows in ((0.97, False), (1.03, True)):
-        load = DiskLoad(16, (-push * np.pi**2 / 4, 0.0))
-        scene = cantilever(16, load, DiskLoad(1, follower=True))
-        found = growth_about(Dynamics(scene, codegen.load_interpreted), at_rest(scene))
-        assert (found is not None) == grows
-        assert found is None or (found.frequency == 0.0 and str(found).startswith("divergence"))
-
-
 # ---- structure, and what is refused ----
 
 
@@ -324,3 +254,51 @@ def test_follower_on_a_disk_that_is_not_there_is_refused_by_name() -> None:
 def test_exact_rod_refuses_followers() -> None:
     with pytest.raises(InputError, match="turn with their disk"):
         exact_rod(with_followers(inextensible(3), *FOLLOWERS))
+
+
+# ---- scenarios: from the file to the verdict ----
+
+
+def test_jet_settles_further_round_than_a_force_that_keeps_its_direction(tmp_path: Path) -> None:
+    jet = simulate(load_scenario(JET))
+    dead = equilibrium(edited(JET, tmp_path, ("follower = true", "follower = false")).scene)
+    assert jet.outcome is Outcome.SETTLED
+    assert jet.equilibria[-1].stable
+    assert jet.tip is not None
+    assert jet.tip[2] == pytest.approx(1.402, abs=1e-3)
+    assert dead.tip[2] == pytest.approx(0.993, abs=1e-3)
+
+
+@pytest.mark.parametrize("method", ["chain", "explicit", "LSODA", "Radau", "DOP853"])
+def test_work_of_a_follower_is_booked_by_every_method(tmp_path: Path, method: Any) -> None:
+    """Work in: the force along the disk's way, by the trapezoidal rule over fine samples."""
+    jet = edited(JET, tmp_path)
+    moved = motion(replace(jet, study=MotionStudy(0.02, samples=2001), solver=Solver(method, 1e-9, 1e-11)))
+    theta, x, y = moved.disk_theta[:, -1], moved.disk_x[:, -1], moved.disk_y[:, -1]
+    along = np.column_stack([-2.0 * np.sin(theta), 2.0 * np.cos(theta)])
+    way = np.diff(np.column_stack([x, y]), axis=0)
+    work = float(np.sum((along[1:] + along[:-1]) / 2 * way))
+    assert moved.ledger["input_work"][-1] == pytest.approx(work, rel=1e-5)
+    assert np.abs(moved.ledger_gap).max() < 1e-4 * work
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("disk = 4", "disk = 5", "follower load on disk 5: beyond the arm. Allowed: disks 1 to 4"),
+        ("follower = true", "folower = true", "Did you mean 'follower'?"),
+        ("follower = true", "follower = 1", "follower: input should be a valid boolean"),
+        ("[study]", '[solver]\nmethod = "midpoint"\n\n[study]', "follower loads have no potential"),
+    ],
+)
+def test_bad_follower_is_named_with_what_is_allowed(tmp_path: Path, old: str, new: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        edited(JET, tmp_path, (old, new))
+    assert told in str(caught.value)
+
+
+def test_undamped_motion_under_a_follower_is_never_left_to_the_midpoint_rule() -> None:
+    scene = cantilever(2, DiskLoad(2, (0.0, 0.1), follower=True))
+    dynamics = Dynamics(scene, codegen.load_interpreted)
+    start, still = dynamics.state(at_rest(scene).coordinates), spans((), 1e5)[0]
+    assert choose(dynamics, start, still, 1e5).method == "explicit"
