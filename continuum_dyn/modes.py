@@ -1,6 +1,7 @@
 """Small motion about a state: its rates, its frequencies, and the modes of an arm at rest."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -8,11 +9,12 @@ from scipy.sparse.linalg import LinearOperator, eigs
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.profiles import Constant, Span, spans
-from continuum_dyn.study import Scenario, dissipated_by
+from continuum_dyn.study import Scenario
 from statics import codegen
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.outcome import Outcome
+from statics.scene import Scene
 
 MOST_COORDINATES = 400
 """Most coordinates of an arm whose modes are asked for: they are all found at once, in some seconds."""
@@ -22,6 +24,8 @@ MOST_DENSE = 128
 """Most coordinates whose linearized motion is written out as a matrix."""
 SMALL = 1e-6
 """Change of a bend angle (rad) by which accelerations are differenced."""
+NEUTRAL = 1e-7
+"""Part of a rate's size below which its growth is rounding."""
 WITHIN = 1e-3
 """Relative error allowed to the iteration for the largest eigenvalue."""
 
@@ -59,9 +63,10 @@ class Mode:
     """A mode of small motion about an equilibrium.
 
     It swings as exp(-decay t) cos(...), with one rate in ``decay_rates`` (1/s), or it is overdamped and
-    creeps back as two exponentials, with the slow rate and the fast one. ``frequency`` (Hz) is that without
-    its damping, so |eigenvalue| / 2 pi, or the geometric mean of the two rates; ``damping_ratio`` is the
-    mean decay rate over 2 pi times that, 1 or more where it creeps.
+    creeps back as two exponentials, with the slow rate and the fast one. A negative rate is one of growth,
+    under loads without a potential: then the mode flutters if it swings, and diverges if it does not.
+    ``frequency`` (Hz) is that without its damping, so |eigenvalue| / 2 pi, or the geometric mean of the two
+    rates' sizes; ``damping_ratio`` is the mean decay rate over 2 pi times that.
 
     ``shape`` holds the disks' displacements in x and y and their turn, shape (disks, 3), per metre of the
     largest displacement of any disk: 1, 1 and rad/m; the tip's larger one is positive. ``coordinates`` is
@@ -81,13 +86,25 @@ class Mode:
         return len(self.decay_rates) == 1
 
     @property
+    def grows(self) -> bool:
+        """Whether it flutters or diverges."""
+        return self.decay_rates[0] < 0.0
+
+    @property
+    def kind(self) -> str:
+        """What it does: "swings", "creeps" (back), "flutters" or "diverges"."""
+        if self.grows:
+            return "flutters" if self.swings else "diverges"
+        return "swings" if self.swings else "creeps"
+
+    @property
     def rates(self) -> tuple[float, ...]:
-        """Absolute eigenvalues, 1/s: one for the conjugate pair, or the two decay rates."""
-        return (2.0 * np.pi * self.frequency,) if self.swings else self.decay_rates
+        """Absolute eigenvalues, 1/s: one for the conjugate pair, or one for each of two exponentials."""
+        return (2.0 * np.pi * self.frequency,) if self.swings else tuple(map(abs, self.decay_rates))
 
     @property
     def decay_time(self) -> float:
-        """Time (s) in which it falls to 1/e, in the end; infinite where nothing damps it."""
+        """Time (s) in which it falls to 1/e, in the end; infinite if undamped, negative if it grows."""
         return 1.0 / self.decay_rates[0] if self.decay_rates[0] else np.inf
 
 
@@ -110,14 +127,15 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
     """The modes about the equilibrium of the scenario's first tensions, which stay as they are.
 
     Raises ``InputError`` for a scene without inertia, with nodes that carry no mass or with more than
-    ``MOST_COORDINATES`` coordinates, and where no stable equilibrium is found.
+    ``MOST_COORDINATES`` coordinates, and where no equilibrium is found, or one whose energy says that it is
+    unstable.
     """
+    check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
-    _check(dynamics)
     rest = StaticSolver(scenario.scene).solve(scenario.initial_tension)
     if rest.outcome is not Outcome.COMPLETED:
         raise InputError(f"modes are those about a stable equilibrium; found: {rest.outcome}.")
-    found = modes(dynamics, dynamics.state(rest.coordinates), _still(scenario.initial_tension))
+    found = modes(dynamics, dynamics.state(rest.coordinates), still(scenario.initial_tension))
     return RestModes(scenario, rest, found)
 
 
@@ -134,70 +152,105 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
             if rest.outcome is not Outcome.COMPLETED:
                 return None
             dynamics = Dynamics(without.scene, codegen.load_interpreted)
-            return rates(dynamics, dynamics.state(rest.coordinates), _still(without.initial_tension))
+            return rates(dynamics, dynamics.state(rest.coordinates), still(without.initial_tension))
     except (InputError, ArithmeticError, ValueError):  # Python raises where compiled code goes on with nan
         return None
 
 
-def _still(inputs: np.ndarray) -> Span:
+def still(inputs: np.ndarray) -> Span:
     """What drives the scene, staying as it is."""
     return spans(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
 
 
+class _Motion(NamedTuple):
+    """The rates of decay (1/s) of a mode, its angular frequency (rad/s), and its part in step."""
+
+    decay: tuple[float, ...]
+    turning: float
+    coordinates: np.ndarray
+
+
 def modes(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[Mode, ...]:
-    """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first.
-
-    Eigenvalues and -vectors of the exact Jacobian. Swinging modes are conjugate pairs; of real eigenvalues
-    each of the slower half is joined with the one of the faster half whose shape is most like its own.
-    """
-    size = dynamics.size
-    eigenvalues, vectors = np.linalg.eig(dynamics.jacobian(span.start, y, span)[: 2 * size, : 2 * size])
-    decay, turning = -np.real(eigenvalues), np.imag(eigenvalues)
-    if not dissipated_by(dynamics.scene):
-        decay[turning != 0.0] = 0.0  # but for rounding
-    shapes = vectors[:size] / dynamics.scales()[:size, None]
-    shapes = np.real(shapes * _turn(shapes))
-    in_step = shapes * dynamics.scales()[:size, None]
-    pairs = [(int(k),) for k in np.flatnonzero(turning > 0.0)]
-    pairs += _overdamped(decay, np.flatnonzero(turning == 0.0), shapes)
+    """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first."""
+    size, scales = dynamics.size, dynamics.scales()[: dynamics.size]
+    jacobian = dynamics.jacobian(span.start, y, span)[: 2 * size, : 2 * size]
+    free = not jacobian[size:, size:].any()
+    motions = _free(jacobian[size:, :size], scales) if free else _damped(jacobian, scales)
     inputs = span.inputs(np.array([span.start]))[0]
-    found = []
-    for pair in pairs:
-        vector = in_step[:, pair[0]].reshape(-1, dynamics.dofs)
-        moved = dynamics.displacements(y, vector, inputs)
-        found.append(_mode([float(decay[k]) for k in pair], float(turning[pair[0]]), vector, moved))
-    return tuple(sorted(found, key=lambda mode: mode.frequency))
+    found = [_mode(dynamics, y, inputs, motion) for motion in motions]
+    return tuple(sorted(found, key=lambda mode: (mode.frequency, mode.decay_rates[0])))
 
 
-def _turn(shapes: np.ndarray) -> np.ndarray:
-    """Phases by which most of each shape is in step: sums of squares become real and positive."""
-    return np.exp(-0.5j * np.angle(np.sum(shapes**2, axis=0)))
+def _free(accelerations: np.ndarray, scales: np.ndarray) -> list[_Motion]:
+    """Modes of what rates do not change, from d(acceleration)/dq: its eigenvalues are squares of rates.
+
+    One below zero swings, one above diverges. A pair of conjugate ones, which only loads without a potential
+    can bring about, flutters: it swings twice, once growing and once dying away.
+    """
+    squares, vectors = np.linalg.eig(accelerations)
+    motions = []
+    for square, shape in zip(squares, _in_step(vectors, scales).T, strict=True):
+        rate = np.sqrt(complex(square))
+        growth = 0.0 if rate.real < NEUTRAL * abs(rate) else float(rate.real)
+        decay = (-growth, growth) if square.imag == 0.0 else (-growth if square.imag > 0.0 else growth,)
+        motions.append(_Motion(decay if growth else (0.0,), float(abs(rate.imag)), shape))
+    return motions
 
 
-def _check(dynamics: Dynamics) -> None:
-    if dynamics.scene.arm.massless_nodes:
+def _damped(jacobian: np.ndarray, scales: np.ndarray) -> list[_Motion]:
+    """Modes from the exact Jacobian by (q, u).
+
+    Swinging ones are conjugate pairs; of real eigenvalues each of the slower half, or of those that grow, is
+    joined with the one of the other half whose shape is most like its own.
+    """
+    eigenvalues, vectors = np.linalg.eig(jacobian)
+    decay, turning = -np.real(eigenvalues), np.imag(eigenvalues)
+    shapes = _in_step(vectors[: scales.size], scales)
+    pairs = [(int(k),) for k in np.flatnonzero(turning > 0.0)]
+    pairs += _overdamped(decay, np.flatnonzero(turning == 0.0), shapes / scales[:, None])
+    return [
+        _Motion(tuple(float(decay[k]) for k in pair), float(turning[pair[0]]), shapes[:, pair[0]])
+        for pair in pairs
+    ]
+
+
+def _in_step(vectors: np.ndarray, scales: np.ndarray) -> np.ndarray:
+    """Shapes turned in phase so that most of each is in step, and that part of them, which is real."""
+    shapes = vectors / scales[:, None]
+    turn = np.exp(-0.5j * np.angle(np.sum(shapes**2, axis=0)))
+    return np.real(shapes * turn) * scales[:, None]
+
+
+def check(scene: Scene) -> None:
+    """Raises ``InputError`` for a scene whose modes cannot be found."""
+    if not scene.has("inertia"):
+        raise InputError("modes need the effect 'inertia'. Add inertia = {} to [effects].")
+    if scene.arm.massless_nodes:
         raise InputError(
             "modes need mass on every node, and those between disks carry none. Give the arm's core_density."
         )
-    if dynamics.size > MOST_COORDINATES:
+    size = scene.arm.segments * len(scene.coordinates)
+    if size > MOST_COORDINATES:
         raise InputError(
-            f"modes of {dynamics.size} coordinates are asked for; allowed: {MOST_COORDINATES}. Give fewer "
-            "disks or subsegments: the lowest modes need few."
+            f"modes of {size} coordinates are asked for; allowed: {MOST_COORDINATES}. Give fewer disks or "
+            "subsegments: the lowest modes need few."
         )
 
 
 def _overdamped(decay: np.ndarray, real: np.ndarray, shapes: np.ndarray) -> list[tuple[int, ...]]:
     """Pairs (slow, fast) of the real eigenvalues, by the likeness of their shapes."""
-    slow, fast = np.split(real[np.argsort(np.abs(decay[real]))], 2)
+    slow, fast = np.split(real[np.argsort(decay[real])], 2)
     unit = shapes / np.linalg.norm(shapes, axis=0)
     rows, columns = linear_sum_assignment(np.abs(unit[:, slow].T @ unit[:, fast]), maximize=True)
     return [(int(slow[row]), int(fast[column])) for row, column in zip(rows, columns, strict=True)]
 
 
-def _mode(decay: list[float], turning: float, coordinates: np.ndarray, shape: np.ndarray) -> Mode:
-    """A mode from its one or two decay rates (1/s), its angular frequency (rad/s) and its unscaled shape."""
-    speed = float(np.hypot(decay[0], turning) if turning else np.sqrt(decay[0] * decay[1]))
+def _mode(dynamics: Dynamics, y: np.ndarray, inputs: np.ndarray, motion: _Motion) -> Mode:
+    decay, turning = motion.decay, motion.turning
+    speed = float(np.hypot(decay[0], turning) if turning else np.sqrt(abs(decay[0] * decay[1])))
+    coordinates = motion.coordinates.reshape(-1, dynamics.dofs)
+    shape = dynamics.displacements(y, coordinates, inputs)
     tip = shape[-1, :2]
     per = np.copysign(np.hypot(shape[:, 0], shape[:, 1]).max(), tip[np.argmax(np.abs(tip))])
     ratio = float(np.mean(decay)) / speed
-    return Mode(speed / (2.0 * np.pi), ratio, tuple(decay), shape / per, coordinates / per)
+    return Mode(speed / (2.0 * np.pi), ratio, decay, shape / per, coordinates / per)

@@ -204,7 +204,8 @@ def _base_motion(base: BaseTable, path: Path) -> tuple[Profile, ...]:
 
 
 def _load(load: LoadTable) -> DiskLoad:
-    return DiskLoad(load.disk, load.force, load.moment, driven=load.factor is not None)
+    driven = load.factor is not None
+    return DiskLoad(load.disk, load.force, load.moment, driven=driven, follower=load.follower)
 
 
 def _repeated(ramps: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:

@@ -113,12 +113,13 @@ class CableTable(BaseModel):
 
 
 class LoadTable(BaseModel):
-    """One of [[loads]]; with ``factor`` it changes in time."""
+    """One of [[loads]]; with ``factor`` it changes in time, a ``follower`` force turns with its disk."""
 
     model_config = STRICT
     disk: DiskNumber
     force: Vector = (0.0, 0.0)
     moment: float = 0.0
+    follower: bool = False
     factor: NumberOrProfile | None = None
 
 

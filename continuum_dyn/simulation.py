@@ -17,6 +17,7 @@ from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
 from continuum_dyn.profiles import Span, spans
 from continuum_dyn.settling import settled, tip_gap
+from continuum_dyn.stability import Growth, judged, why_not_judged
 from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
 from continuum_dyn.trajectory import Trajectory
 from statics.arm import MAX_SEGMENTS
@@ -129,7 +130,7 @@ def _extrapolated(coarse: Run, fine: Run) -> Run:
     error = (4.0 * (fine.tip_error or 0.0) + (coarse.tip_error or 0.0)) / 3.0
     run = replace(run, trajectory=extrapolated(coarse.trajectory, fine.trajectory), tip_error=error)
     assert isinstance(fine.scenario.study, MotionStudy)
-    return _compared(run, fine.scenario.study, run.equilibria[-1])
+    return _compared(run, fine.scenario.study, run.equilibria[-1:])
 
 
 def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
@@ -151,18 +152,34 @@ def _statics(scenario: Scenario) -> Run:
     started = time.perf_counter()
     points = solver.ramp(tensions)
     solve_time = time.perf_counter() - started
-    failed = next((point for point in points if point.outcome is not Outcome.COMPLETED), None)
-    outcome, message = (Outcome.COMPLETED, "") if failed is None else (failed.outcome, _why(failed))
+    message, growths = "", [None] * len(points)
+    if any(point.stable is None for point in points):
+        message = why_not_judged(scenario.scene) or ""
+        if not message:
+            points, growths = _judged(Dynamics(scenario.scene), points)
+    outcome = Outcome.COMPLETED
+    for point, growth in zip(points, growths, strict=True):
+        if point.outcome is not Outcome.COMPLETED:
+            outcome, message = point.outcome, _why(point, growth)
+            break
     return Run(scenario, outcome, message, points, solve_time=solve_time)
 
 
-def _why(point: Equilibrium) -> str:
-    """What to tell of a search that did not end in a stable equilibrium."""
+def _judged(dynamics: Dynamics, points: list[Equilibrium]) -> tuple[list[Equilibrium], list[Growth | None]]:
+    """Equilibria, where their energy does not tell whether they are stable, as their modes do."""
+    found = [judged(dynamics, point) if point.stable is None else (point, None) for point in points]
+    return [point for point, _ in found], [growth for _, growth in found]
+
+
+def _why(point: Equilibrium, growth: Growth | None = None) -> str:
+    """What to tell of a search that did not end in a stable equilibrium, with what grows about it."""
     at = (
         f"at tension {', '.join(f'{tau:g}' for tau in point.tension)} N"
         if point.tension.size
         else "without cables"
     )
+    if growth is not None:
+        return f"{growth}, {at}"
     if point.outcome is Outcome.UNSTABLE_EQUILIBRIUM:
         return f"unstable in {point.unstable_directions} directions {at}"
     if point.outcome is Outcome.GEOMETRY_LIMIT:
@@ -203,18 +220,22 @@ def _motion(
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end = statics.solve(last, start.coordinates, start)
     path = statics.ramp(moved.trajectory.inputs, start.coordinates) if study.static_path else []
+    solve_time = time.perf_counter() - started
+    ends, growths = [start, end], [None, None]
+    if why_not_judged(scenario.scene) is None:
+        ends, growths = _judged(dynamics, ends)
     run = Run(
         scenario,
         monitor.outcome or Outcome.COMPLETED,
         monitor.message,
-        [start, end],
+        ends,
         path,
         moved.trajectory,
         solver=moved.solver,
         tip_error=moved.tip_error,
-        solve_time=time.perf_counter() - started,
+        solve_time=solve_time,
     )
-    return run if monitor.outcome else _compared(run, study, end, statics.branches(last, end))
+    return run if monitor.outcome else _compared(run, study, statics.branches(last, ends[-1]), growths[-1])
 
 
 class _Moved(NamedTuple):
@@ -260,15 +281,15 @@ def _moved(
     return _Moved(found.trajectory, found.solver, found.estimate)
 
 
-def _compared(run: Run, study: MotionStudy, end: Equilibrium, branches: Sequence[Equilibrium] = ()) -> Run:
+def _compared(run: Run, study: MotionStudy, ends: Sequence[Equilibrium], growth: Growth | None = None) -> Run:
     """The run with its distance from where it may end, and the verdict of a step response."""
     assert run.trajectory is not None
-    rests = [point.tip for point in (branches or (end,)) if point.found]
+    end, rests = ends[-1], [point.tip for point in ends if point.found]
     gap = tip_gap(run.trajectory.tip, rests) if rests else None
     if not isinstance(study, StepResponseStudy):
         return replace(run, static_gap=gap)
     if gap is None or end.outcome is not Outcome.COMPLETED:
-        return replace(run, static_gap=gap, outcome=end.outcome, message=_why(end))
+        return replace(run, static_gap=gap, outcome=end.outcome, message=_why(end, growth))
     speed = float(run.trajectory.tip_speed[-1])
     verdict = Outcome.SETTLED if settled(gap, speed, run.scenario.settled_within) else Outcome.NOT_SETTLED
     return replace(run, static_gap=gap, outcome=verdict)

@@ -214,6 +214,12 @@ class Scenario:
                 '[accuracy] chooses tolerances, and method = "midpoint" has none. Give [solver] step without '
                 "[accuracy], or another method."
             )
+        if self.scene.without_potential:
+            raise InputError(
+                'method = "midpoint" keeps the energy of scenes that have one; '
+                f'{" and ".join(self.scene.without_potential)} have no potential. Take method = "chain" or '
+                '"explicit".'
+            )
         damping = dissipated_by(self.scene)
         if damping:
             raise InputError(

@@ -1,10 +1,10 @@
 """Generated kernels: written once for each structure of a scene, kept in the user's cache, loaded.
 
-Structure is what changes the equations: the effects, the coordinates of a segment, the numbers of cables and
-of loads that change, whether there is a base and whether it moves, the most payloads on one disk, whether a
-span has several segments, whether the holes of a cable differ. Numbers are not, so a changed number never
-recompiles; a changed source file always does. A warm start finds its kernel by a hash and imports neither
-sympy nor the derivation.
+Structure is what changes the equations: the effects, the coordinates of a segment, the kinds of the cables,
+the loads that change or that turn with their disk, whether there is a base and whether it moves, the most
+payloads on one disk, whether a span has several segments, whether the holes of a cable differ. Numbers are
+not, so a changed number never recompiles; a changed source file always does. A warm start finds its kernel
+by a hash and imports neither sympy nor the derivation.
 """
 
 import hashlib
@@ -87,7 +87,8 @@ def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
     effects = [effect.name for effect in scene.effects]
     forms = (scene.cable_kinds, scene.inputs, scene.payloads, scene.spans, scene.holes_differ)
-    structure = (recipe.kind, scene.coordinates, forms, effects)
+    loads = (scene.followers_among_driven, scene.has_followers)
+    structure = (recipe.kind, scene.coordinates, forms, loads, effects)
     sources = [_digest(file, file.stat().st_mtime_ns) for file in recipe.sources]
     sources += [_effect_digest(effect) for effect in scene.effects]
     return hashlib.sha256(repr((structure, _versions(), sources)).encode()).hexdigest()[:24]

@@ -38,12 +38,13 @@ class Equilibrium:
 
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
     loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
-    ``base``; SI units. ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
+    ``base``; SI units. ``inputs`` are the scene's, without motion. ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
     it is not known: under loads without a potential, until the modes of small motion have been asked.
     """
 
     outcome: Outcome
+    inputs: np.ndarray
     tension: np.ndarray
     cable_displacement: np.ndarray
     load_factor: np.ndarray | None
@@ -140,6 +141,7 @@ class StaticSolver:
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(
             outcome=_OUTCOMES[ended],
+            inputs=self.scene.held(inputs),
             **self.scene.driven_by(inputs, disk_x, disk_y, disk_theta),
             bend_angle=q[:, 0],
             elongation=elongation,

@@ -128,6 +128,8 @@ def _check(scene: Scene) -> None:
         raise InputError("the exact rod knows arms of equal segments only.")
     if scene.driven_loads:
         raise InputError("the exact rod does not know loads that change in time.")
+    if scene.has_followers:
+        raise InputError("the exact rod does not know loads that turn with their disk.")
     if scene.arm.core_density is not None:
         raise InputError("the exact rod has no mass of its own: it does not know core_density.")
     if scene.arm.payloads:

@@ -85,15 +85,18 @@ tension_lost         | -     | N      | what friction has taken of a cable's ten
 acceleration         | -     | m/s^2  | acceleration of gravity, a vector in the plane
 gravity_x            | g_x   | m/s^2  | acceleration of gravity along x
 gravity_y            | g_y   | m/s^2  | acceleration of gravity along y
-force                | -     | N      | dead force on a disk, a vector in the plane
+force                | -     | N      | force on a disk, a vector; in the disk's axes if it follows
+follower             | -     | 1      | whether a force turns with its disk
 moment               | -     | N m    | moment on a disk, positive counter-clockwise
 load_force_x         | F_x   | N      | sum of the dead forces on a disk, along x
 load_force_y         | F_y   | N      | sum of the dead forces on a disk, along y
 load_moment          | M     | N m    | sum of the moments on a disk
+follower_force_x     | F_t   | N      | sum of the follower forces on a disk, along the core's tangent there
+follower_force_y     | F_n   | N      | sum of the follower forces on a disk, along the disk's y axis
 load_factor          | f     | 1      | what a load that changes in time is multiplied by
 factor               | f     | 1      | what a load that changes in time is multiplied by
-driven_force_x       | F_x   | N      | force that a load factor multiplies, along x
-driven_force_y       | F_y   | N      | force that a load factor multiplies, along y
+driven_force_x       | F_x   | N      | force that a load factor multiplies, along x; a follower's, the core
+driven_force_y       | F_y   | N      | force that a load factor multiplies, along y; a follower's, the disk's
 driven_moment        | M     | N m    | moment that a load factor multiplies
 load                 | -     | 1      | number of a load that changes in time
 retardation_time     | t_r   | s      | Kelvin-Voigt viscosity over Young's modulus, eta / E

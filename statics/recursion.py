@@ -262,7 +262,9 @@ def _pull(forces: SceneForces, cable: CableSymbols) -> sp.Matrix:
 
 def _let_matrix(trace: Trace, symmetric: bool, name: str, value: sp.Matrix) -> sp.Matrix:
     """Name the entries of a matrix, or those of the upper triangle of a symmetric one."""
-    return trace.symmetric(name, value) if symmetric else trace.let(name, value)
+    if symmetric:
+        return trace.symmetric(name, value)
+    return sp.Matrix(*value.shape, lambda r, c: trace.let(f"{name}_{r}{c}", value[r, c]))
 
 
 def _named(name: str, value: sp.Matrix) -> sp.Matrix:

@@ -81,9 +81,30 @@ class Scene:
         return tuple(CableKind(cable.driven_by_length, rubs and cable.friction > 0) for cable in cables)
 
     @property
+    def _loads(self) -> DiskLoads:
+        return next((effect for effect in self.effects if isinstance(effect, DiskLoads)), DiskLoads())
+
+    @property
     def driven_loads(self) -> int:
         """Number of the loads that change in time."""
-        return sum(effect.driven for effect in self.effects if isinstance(effect, DiskLoads))
+        return len(self._loads.driven)
+
+    @property
+    def followers_among_driven(self) -> tuple[bool, ...]:
+        """Of every load that changes in time, whether it turns with its disk."""
+        return tuple(load.follower for load in self._loads.driven)
+
+    @property
+    def has_followers(self) -> bool:
+        """Whether some load that does not change in time turns with its disk."""
+        return self._loads.has_followers
+
+    @property
+    def without_potential(self) -> tuple[str, ...]:
+        """What acts at rest and has no potential, in words."""
+        follows = self.has_followers or any(self.followers_among_driven)
+        rubs = any(kind.rubs for kind in self.cable_kinds)
+        return (*(["follower loads"] if follows else []), *(["cables that rub"] if rubs else []))
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -105,6 +126,14 @@ class Scene:
     def driven_by_length(self) -> list[int]:
         """Places, from 0 on, of the cables whose displacement is given."""
         return [number for number, kind in enumerate(self.cable_kinds) if kind.driven_by_length]
+
+    def held(self, inputs: np.ndarray) -> np.ndarray:
+        """Those inputs with all that moves held where it is: rates and accelerations are zero."""
+        moving = [name.startswith(("cable_displacement_rate", *BASE_MOTION)) for name in self.inputs]
+        still = inputs.copy()
+        still[..., : len(moving)][..., moving] = 0.0
+        still[..., len(moving) :] = 0.0
+        return still
 
     def driven_by(
         self, inputs: np.ndarray, disk_x: np.ndarray, disk_y: np.ndarray, disk_theta: np.ndarray

@@ -6,6 +6,7 @@ follow from them. With h = phi / 2 its far end is a chord at half the angle (Ron
     x = L sigma_0(h) cos h,   y = L sigma_0(h) sin h,   theta = phi
 """
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -119,7 +120,7 @@ class SegmentSymbols:
 
 
 class DrivenLoad(NamedTuple):
-    """A load on a disk that changes in time: a factor, and what it multiplies."""
+    """A load on a disk that changes in time: a factor, and what it multiplies, the force in base axes."""
 
     factor: Any
     force: tuple[Any, Any]
@@ -182,19 +183,16 @@ class MassSymbols(NamedTuple):
 class DiskSymbols:
     """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters.
 
-    ``payloads`` is the largest number of them on one disk, ``driven_loads`` that of loads that change.
+    ``payloads`` is the largest number of them on one disk. ``followers_among_driven`` says of every load that
+    changes in time whether it turns with its disk, ``has_followers`` whether another one does.
     """
 
-    def __init__(self, payloads: int = 0, driven_loads: int = 0) -> None:
+    def __init__(
+        self, payloads: int = 0, followers_among_driven: Sequence[bool] = (), has_followers: bool = False
+    ) -> None:
         self.number_of_payloads = payloads
-        self.driven_loads = [
-            DrivenLoad(
-                symbol(f"load_factor_{number}"),
-                (symbol(f"driven_force_x_{number}"), symbol(f"driven_force_y_{number}")),
-                symbol(f"driven_moment_{number}"),
-            )
-            for number in range(1, driven_loads + 1)
-        ]
+        self.followers_among_driven = followers_among_driven
+        self.has_followers = has_followers
         self.position = (symbol("x"), symbol("y"))
         self.angle = symbol("theta")
         self.velocity = (symbol("velocity_x"), symbol("velocity_y"))
@@ -208,6 +206,24 @@ class DiskSymbols:
     def __getattr__(self, name: str) -> sp.Symbol:
         return _parameter(name)
 
+    def turned(self, along: Any, across: Any) -> tuple[Any, Any]:
+        """A vector in base axes from its components along the core's tangent and the disk's y axis."""
+        cosine, sine = sp.cos(self.angle), sp.sin(self.angle)
+        return cosine * along - sine * across, sine * along + cosine * across
+
+    @cached_property
+    def driven_loads(self) -> list[DrivenLoad]:
+        """Every load that changes in time."""
+        return [self._driven(*load) for load in enumerate(self.followers_among_driven, start=1)]
+
+    def _driven(self, number: int, follows: bool) -> DrivenLoad:
+        force = symbol(f"driven_force_x_{number}"), symbol(f"driven_force_y_{number}")
+        return DrivenLoad(
+            symbol(f"load_factor_{number}"),
+            self.turned(*force) if follows else force,
+            symbol(f"driven_moment_{number}"),
+        )
+
     @cached_property
     def masses(self) -> list[MassSymbols]:
         """The disk's own mass, and its payloads'."""
@@ -217,9 +233,7 @@ class DiskSymbols:
 
     def _payload(self, number: int) -> MassSymbols:
         """A rigid body's centre d away: v + omega z x d, a + alpha z x d - omega^2 d."""
-        cosine, sine = sp.cos(self.angle), sp.sin(self.angle)
-        along, across = symbol(f"payload_offset_x_{number}"), symbol(f"payload_offset_y_{number}")
-        d_x, d_y = cosine * along - sine * across, sine * along + cosine * across
+        d_x, d_y = self.turned(symbol(f"payload_offset_x_{number}"), symbol(f"payload_offset_y_{number}"))
         (x, y), (v_x, v_y), (a_x, a_y) = self.position, self.velocity, self.acceleration
         omega, alpha = self.angular_velocity, self.angular_acceleration
         return MassSymbols(

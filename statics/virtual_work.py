@@ -164,7 +164,7 @@ def derive_statics(scene: Scene) -> SceneForces:
 def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
     """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
     segment = SegmentSymbols(scene.coordinates, scene.cable_kinds, scene.holes_differ)
-    disk = DiskSymbols(scene.payloads, scene.driven_loads)
+    disk = DiskSymbols(scene.payloads, scene.followers_among_driven, scene.has_followers)
     span = SpanSymbols(scene.cable_kinds, scene.holes_differ) if scene.spans else None
     on_segment = collect(scene.effects, "segment", segment)
     on_disk = collect(scene.effects, "disk", disk)

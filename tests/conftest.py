@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from continuum_dyn import Scenario, Trajectory, simulate
+from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.integrators import METHODS
 from statics import (
@@ -15,12 +16,17 @@ from statics import (
     Cables,
     DiskLoad,
     DiskLoads,
+    Each,
+    Equilibrium,
     Extension,
     Gravity,
     Scene,
+    StaticSolver,
+    codegen,
 )
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
+JET = SCENARIOS / "follower_tip.toml"
 UPPER = Cable("upper", RONE2012_HOLE_OFFSET)
 MOTION = (Inertia(), RotaryInertia(), MaterialDamping(retardation_time=1.2e-3))
 
@@ -53,6 +59,33 @@ def weightless_core(
 def moving(scene: Scene, damping: bool = True) -> Scene:
     """The scene with inertia, and with the paper's arm's damping unless it is to go on for ever."""
     return Scene(scene.arm, (*scene.effects, *(MOTION if damping else MOTION[:2])))
+
+
+def cantilever(disks: int, *loads: DiskLoad, damping: float = 0.0) -> Scene:
+    """E J = 1, length 1, mass 1 with half a disk's share at the tip: second order in the number of disks."""
+    mass = np.full(disks, 1.0 / disks)
+    mass[-1] /= 2
+    arm = Arm(
+        disks, 1.0 / disks, youngs_modulus=1.0, second_moment=1.0, each=Each(disk_mass=tuple(mass.tolist()))
+    )
+    damped = (MaterialDamping(damping),) if damping else ()
+    return Scene(arm, (Bending(), DiskLoads(loads), Inertia(), *damped))
+
+
+def at_rest(scene: Scene) -> Equilibrium:
+    """The equilibrium from straight, by kernels in plain Python."""
+    return StaticSolver(scene, codegen.load_interpreted).solve(np.empty(0))
+
+
+def edited(scenario: Path, folder: Path, *changes: tuple[str, str]) -> Scenario:
+    """The scenario of a file with these changes to its text, by way of a file in that folder."""
+    text = scenario.read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / scenario.name
+    path.write_text(text)
+    return load_scenario(path)
 
 
 def motion(scenario: Scenario) -> Trajectory:

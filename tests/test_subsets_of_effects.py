@@ -49,14 +49,16 @@ OPTIONAL: tuple[Effect, ...] = (
     LinearDrag(0.02, 1e-6),
     QuadraticDrag(0.3, 1e-8),
 )
+FOLLOWING = DiskLoads((DiskLoad(1, (-0.3, 0.5), -0.01), DiskLoad(2, (0.4, -0.7), 0.02, follower=True)))
 TENSION = np.array([1.3, 0.7])
 
 
 def sampled(seed: int) -> Scene:
     """Each effect and each trait of the arm with even odds."""
     odds = np.random.default_rng(seed).random(20) < 0.5
+    subsegments, tapered, laden, following = (2 if odds[11] else 1), odds[12], odds[13], odds[14]
     effects = [effect for effect, there in zip(OPTIONAL, odds, strict=False) if there]
-    subsegments, tapered, laden = (2 if odds[11] else 1), odds[12], odds[13]
+    effects = [FOLLOWING if following and effect.name == "loads" else effect for effect in effects]
     upper = Cable("upper", (0.009, 0.008, 0.006) if tapered else 0.008)
     arm = Arm.preset(
         "rone2012",

@@ -38,9 +38,10 @@ class WholeArm:
 
     ``n`` segments, with ``L0``, ``EJ``, ``EA`` and ``k0`` of each, shape (n,); every ``step``-th of their
     ends is a disk. ``m`` and ``I_xx`` hold what stands on each end, shape (n,), so do the dead loads
-    ``force`` (n, 2) and ``moment`` (n,). ``r_h`` has shape (cables, disks + 1), the base's first; ``last``
-    (the anchor's disk) has one number for each cable; ``relaxation`` is eta / E. ``payload`` holds mass,
-    inertia and offset of each, shape (payloads, 4), and ``carriers`` the ends that they are fixed to.
+    ``force`` (n, 2) and ``moment`` (n,), and the forces ``follower`` (n, 2) in axes that turn with the end.
+    ``r_h`` has shape (cables, disks + 1), the base's first; ``last`` (the anchor's disk) has one number for
+    each cable; ``relaxation`` is eta / E. ``payload`` holds mass, inertia and offset of each, shape
+    (payloads, 4), and ``carriers`` the ends that they are fixed to.
     """
 
     n: int
@@ -58,6 +59,7 @@ class WholeArm:
     last: np.ndarray
     force: np.ndarray
     moment: np.ndarray
+    follower: np.ndarray
     payload: np.ndarray
     carriers: tuple[int, ...]
 
@@ -87,9 +89,9 @@ def whole_arm(scene: Scene) -> WholeArm:
     cables = arm.cables if Cables in has else ()
     gravity, damping = has.get(Gravity), has.get(MaterialDamping)
     n, step = arm.disks * arm.subsegments, arm.subsegments
-    force, moment, m, I_xx = np.zeros((n, 2)), np.zeros(n), np.zeros(n), np.zeros(n)
+    (force, follower), (moment, m, I_xx) = np.zeros((2, n, 2)), np.zeros((3, n))
     for load in getattr(has.get(DiskLoads), "loads", ()):
-        force[step * load.disk - 1] += load.force
+        (follower if load.follower else force)[step * load.disk - 1] += load.force
         moment[step * load.disk - 1] += load.moment
     m[step - 1 :: step] = arm.per_disk("disk_mass")
     I_xx[step - 1 :: step] = arm.per_disk("disk_inertia") if RotaryInertia in has else 0.0
@@ -115,6 +117,7 @@ def whole_arm(scene: Scene) -> WholeArm:
         last=np.array([cable.anchor or arm.disks for cable in cables]),
         force=force,
         moment=moment,
+        follower=follower,
         payload=np.array([(p.mass, p.inertia, *p.offset) for p in arm.payloads]).reshape(-1, 4),
         carriers=tuple(step * payload.disk for payload in arm.payloads),
     )
@@ -205,7 +208,7 @@ class _Symbols:
         self.m, self.I_xx = sp.symbols(f"m1:{n + 1}"), sp.symbols(f"I1:{n + 1}")
         self.r_h = sp.Matrix(cables, n // step + 1, lambda c, i: sp.Symbol(f"r{c}_{i}"))
         self.tension = sp.Matrix(cables, n // step, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
-        self.load = sp.Matrix(n, 3, lambda i, a: sp.Symbol(f"load{i}_{a}"))
+        self.load = sp.Matrix(n, 5, lambda i, a: sp.Symbol(f"load{i}_{a}"))
         self.payload = sp.Matrix(payloads, 4, lambda i, a: sp.Symbol(f"payload{i}_{a}"))
         self.q, self.u = [*self.phi, *self.e], [*self.phi_rate, *self.e_rate]
 
@@ -239,12 +242,13 @@ def _place_disks(s: _Symbols) -> tuple[list[ReferenceFrame], list[Point]]:
 
 
 def _disk_loads(s: _Symbols, frames: list[ReferenceFrame], centers: list[Point]) -> list[Any]:
-    """Weights (Eq. 19) and dead loads."""
+    """Weights (Eq. 19), dead loads, and forces that turn with their disk."""
     *_, g_x, g_y, _relaxation = s.numbers
     base, loads = frames[0], []
     for i, (frame, center) in enumerate(zip(frames[1:], centers[1:], strict=True)):
         weight = s.m[i] * g_x * base.x + s.m[i] * g_y * base.y
-        loads.append((center, weight + s.load[i, 0] * base.x + s.load[i, 1] * base.y))
+        dead = s.load[i, 0] * base.x + s.load[i, 1] * base.y
+        loads.append((center, weight + dead + s.load[i, 3] * frame.x + s.load[i, 4] * frame.y))
         loads.append((frame, s.load[i, 2] * base.z))
     return loads
 
@@ -328,7 +332,7 @@ def _kane_function(
 
 
 def _arguments(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> list[np.ndarray]:
-    load = np.column_stack([arm.force, arm.moment])
+    load = np.column_stack([arm.force, arm.moment, arm.follower])
     tensions, numbers = arm.tension_along(tension), [np.array(arm.numbers), *arm.core, arm.m, arm.I_xx]
     numbers.append(arm.r_h.ravel())
     return [q.T.ravel(), u.T.ravel(), *numbers, tensions.ravel(), load.ravel(), arm.payload.ravel()]

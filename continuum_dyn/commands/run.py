@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 MAX_ROWS = 20
 """Most rows of a ramp that are printed."""
+STABLE = {True: "yes", False: "no", None: "unknown"}
 BAR_INTERVAL = 0.1
 """Shortest time between two updates of the progress bar, s."""
 
@@ -208,9 +209,7 @@ def _ramp_table(result: "Run", points: list[Any]) -> Any:
     for point in points[::stride]:
         x, y, theta = point.tip
         tensions = (f"{tau:g}" for tau in point.tension)
-        table.add_row(
-            *tensions, f"{x * 1e3:.4f}", f"{y * 1e3:.4f}", f"{theta:.5f}", "yes" if point.stable else "no"
-        )
+        table.add_row(*tensions, f"{x * 1e3:.4f}", f"{y * 1e3:.4f}", f"{theta:.5f}", STABLE[point.stable])
     return table
 
 

@@ -29,9 +29,10 @@ def duration(value: float) -> str:
 
 def mode_row(mode: "Mode") -> tuple[str, str, str]:
     """Frequency, damping ratio and decay time of a mode."""
-    creeps = "" if mode.swings else ", creeps"
-    decay_time = duration(mode.decay_time) if isfinite(mode.decay_time) else "never"
-    return f"{mode.frequency:.5g} Hz", f"{mode.damping_ratio:.3g}{creeps}", decay_time
+    kind = "" if mode.kind == "swings" else f", {mode.kind}"
+    decay_time = duration(abs(mode.decay_time)) if isfinite(mode.decay_time) else "never"
+    grows = "grows e-fold in " if mode.grows else ""
+    return f"{mode.frequency:.5g} Hz", f"{mode.damping_ratio:.3g}{kind}", f"{grows}{decay_time}"
 
 
 def make_folder(folder: Path) -> None:

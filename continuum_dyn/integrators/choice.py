@@ -44,7 +44,7 @@ def choose(dynamics: Dynamics, start: np.ndarray, span: Span, duration: float, e
         return Choice("explicit", f"the scene is not stiff, {found}: explicit steps are the cheapest")
     slowest = rates(dynamics, start, span)[0] if dynamics.size <= FEW else dynamics.frequency
     periods = duration * slowest / (2.0 * np.pi)
-    if periods > MANY_PERIODS and not exact:
+    if periods > MANY_PERIODS and not exact and not scene.without_potential:
         return Choice(
             "midpoint", f"nothing is damped, and over some {periods:.0g} periods energy must not drift"
         )

@@ -90,7 +90,7 @@ def modes(found: RestModes) -> Figure:
         axes.set_axis_off()
     for number, (axes, mode) in enumerate(zip(grid.flat, shown, strict=False), start=1):
         _draw_mode(axes, found, mode)
-        ending = "" if mode.swings else ", creeps"
+        ending = "" if mode.kind == "swings" else f", {mode.kind}"
         title = f"{number}: {mode.frequency:.5g} Hz, damping ratio {mode.damping_ratio:.2g}{ending}"
         axes.set_title(title, fontsize=9)
     for axes in grid[-1]:

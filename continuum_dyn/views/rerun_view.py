@@ -229,9 +229,11 @@ def _still_lines(log: Log, story: Story) -> dict[str, Lines]:
 
 
 def _ends_at_rest(log: Log) -> bool:
-    """Whether the last equilibrium belongs to the motion's end, and the arm can settle on it."""
+    """Whether the last equilibrium belongs to the motion's end and is not known to be unstable."""
     rest = log.equilibria
-    return bool(rest) and bool(rest["stable"][-1]) and rest["time"][-1] >= log.trajectory["time"][-1]
+    if not rest or rest["time"][-1] < log.trajectory["time"][-1]:
+        return False
+    return "stable" not in rest or bool(rest["stable"][-1])
 
 
 def _plots(log: Log, story: Story) -> dict[str, Plot]:

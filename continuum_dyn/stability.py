@@ -1,0 +1,73 @@
+"""Stability where no energy tells: whether small motions about an equilibrium grow.
+
+Loads without a potential can make an arm flutter, which its stiffness alone does not show (Beck 1952, Bolotin
+1963). So the eigenvalues of the linearized motion decide.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.modes import NEUTRAL, check, still
+from statics.equilibria import Equilibrium
+from statics.errors import InputError
+from statics.outcome import Outcome
+from statics.scene import Scene
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The modes that grow about an equilibrium: how many, and how the fastest does.
+
+    ``rate`` in 1/s; ``frequency`` in Hz, zero where it does not swing.
+    """
+
+    modes: int
+    rate: float
+    frequency: float
+
+    def __str__(self) -> str:
+        more = f" (the fastest of {self.modes} modes that grow)" if self.modes > 1 else ""
+        if self.frequency:
+            return f"flutter at {self.frequency:.4g} Hz that grows at {self.rate:.3g} 1/s{more}"
+        return f"divergence that grows at {self.rate:.3g} 1/s{more}"
+
+
+def growth_about(dynamics: Dynamics, point: Equilibrium) -> Growth | None:
+    """What grows of the small motions about an equilibrium, under its inputs; None if nothing does."""
+    rates = _eigenvalues(dynamics, point)
+    sizes = np.abs(rates)
+    grow = (rates.real > NEUTRAL * sizes) & (rates.imag >= 0.0) & (sizes > NEUTRAL * sizes.max())
+    if not grow.any():
+        return None
+    fastest = rates[grow][np.argmax(rates[grow].real)]
+    return Growth(int(grow.sum()), float(fastest.real), float(fastest.imag) / (2.0 * np.pi))
+
+
+def _eigenvalues(dynamics: Dynamics, point: Equilibrium) -> Any:
+    """Those of the linearized motion, 1/s; without damping only one of each two of opposite sign."""
+    size, span = dynamics.size, still(point.inputs)
+    jacobian = dynamics.jacobian(span.start, dynamics.state(point.coordinates), span)
+    if jacobian[size : 2 * size, size : 2 * size].any():
+        return np.linalg.eigvals(jacobian[: 2 * size, : 2 * size])
+    return np.sqrt(np.linalg.eigvals(jacobian[size : 2 * size, :size]).astype(complex))
+
+
+def why_not_judged(scene: Scene) -> str | None:
+    """Why nothing can be said of the stability of the scene's equilibria, and what to add; or None."""
+    try:
+        check(scene)
+    except InputError as reason:
+        loads = " and ".join(scene.without_potential)
+        return f"stability is not judged: {loads} have no potential, so modes must tell, and {reason}"
+    return None
+
+
+def judged(dynamics: Dynamics, point: Equilibrium) -> tuple[Equilibrium, Growth | None]:
+    """The equilibrium with an outcome by its modes, and what grows about it."""
+    growth = growth_about(dynamics, point)
+    outcome = Outcome.COMPLETED if growth is None else Outcome.UNSTABLE_EQUILIBRIUM
+    directions = 0 if growth is None else growth.modes
+    return replace(point, outcome=outcome, unstable_directions=directions), growth
