@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from statics.cable_sweep import measure_cables
     from statics.chain import eliminate_sweep, residual_sweep, substitute_sweep
     from statics.generated import CHAIN_COLUMNS, ELIMINATE_START, pose_start, pose_step
+    from statics.held_tensions import count_held
     from statics.search import (
         AT_LIMIT,
         AT_REST,
@@ -141,11 +142,13 @@ def examine(
 ) -> tuple[float, float, float, int]:
     """Poses of the disks into ``pose``, shape (n, 3).
 
-    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and UNKNOWN: the signs of an
-    unsymmetric matrix tell nothing of oscillations that grow.
+    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and the number of unstable
+    directions, or UNKNOWN: the signs of an unsymmetric matrix tell nothing of oscillations that grow.
     """
     chain, residual = np.empty((q.shape[0], CHAIN_COLUMNS)), np.empty_like(q)
     pose_sweep(q, inputs, segments, disks, chain)
     residual_sweep(disks, chain, residual)
+    negative = np.full(1, UNKNOWN)
+    count_held(segments, disks, chain, residual, negative)
     elastic, gravity = observe(q, inputs, segments, disks, chain, pose)
-    return elastic, gravity, np.abs(residual).max(), UNKNOWN
+    return elastic, gravity, np.abs(residual).max(), int(negative[0])

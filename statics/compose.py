@@ -36,7 +36,7 @@ from numba import njit
 compiled = njit(cache=True, error_model="numpy", nogil=True)
 inlined = njit(inline="always", error_model="numpy")'''
 
-OPTIONAL = {"measure_cables", "measure_moving_cables", "measure_changes"}
+OPTIONAL = {"measure_cables", "measure_moving_cables", "measure_changes", "count_held"}
 """Sweeps that only scenes with coupled cables need."""
 
 

@@ -38,7 +38,8 @@ class Equilibrium:
 
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
     loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
-    ``base``; SI units. ``inputs`` are the scene's, without motion. ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
+    ``base``; SI units. ``inputs`` are the scene's, without
+    motion; ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
     it is not known: under loads without a potential, until the modes of small motion have been asked.
     """
@@ -96,6 +97,13 @@ class Equilibrium:
         return np.column_stack(parts)
 
 
+def _outcome(ended: int, negative: int) -> Outcome:
+    """How a search ended, with the number of unstable directions where it is known."""
+    if ended == search.BALANCED and negative > 0:
+        return Outcome.UNSTABLE_EQUILIBRIUM
+    return _OUTCOMES[ended]
+
+
 class Slip(IntEnum):
     """Which way cables that rub have all slipped: the two branches of a ramp with friction."""
 
@@ -140,7 +148,7 @@ class StaticSolver:
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(
-            outcome=_OUTCOMES[ended],
+            outcome=_outcome(ended, negative),
             inputs=self.scene.held(inputs),
             **self.scene.driven_by(inputs, disk_x, disk_y, disk_theta),
             bend_angle=q[:, 0],

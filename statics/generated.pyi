@@ -18,6 +18,7 @@ BEYOND_START: Carried
 CLEARANCE_START: Carried
 RESIDUAL_START: Carried
 ELIMINATE_START: Carried
+ELIMINATE_HELD_START: Carried
 LENGTHS_START: Carried
 SUBSTITUTE_START: Carried
 
@@ -50,6 +51,16 @@ def residual_step(
     i: int, carried: Carried, disks: np.ndarray, chain: np.ndarray, residual: np.ndarray
 ) -> Carried: ...
 def eliminate_step(
+    i: int,
+    carried: Carried,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    residual: np.ndarray,
+    descent: np.ndarray,
+    pivots: np.ndarray,
+) -> Carried: ...
+def eliminate_held_step(
     i: int,
     carried: Carried,
     segments: np.ndarray,

@@ -343,13 +343,15 @@ class Weights:
     """A Newton matrix: mass M + damping C + stiffness K, each times its weight.
 
     A weight may be a number, or a symbol whose value the sweep is handed. ``definite`` says that the
-    matrix is taken as positive, so that its pivots need no care.
+    matrix is taken as positive, so that its pivots need no care; not ``coupled``, that the tensions of cables
+    are held as they are.
     """
 
     mass: Any
     damping: Any
     stiffness: Any
     definite: bool = True
+    coupled: bool = True
 
     @property
     def handed(self) -> list[sp.Symbol]:
@@ -358,6 +360,7 @@ class Weights:
 
 
 STATIC = Weights(0, 0, 1, definite=False)
+HELD = Weights(0, 0, 1, definite=False, coupled=False)
 ACCELERATION = Weights(1, 0, 0)
 IMPLICIT = Weights(1, symbol("damping_weight"), symbol("stiffness_weight"))
 
@@ -371,7 +374,7 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
     """
     trace = Trace()
     reach = reach_of(forces)
-    symmetric = forces.conservative or weights.damping == weights.stiffness == 0
+    symmetric = forces.conservative or not weights.coupled or weights.damping == weights.stiffness == 0
     dofs = len(forces.segment.coordinates)
     coupled = coupled_by(forces, weights)
     S, X, here = reach.partials, reach.transition, _weighted(weights, symmetric, forces, "disk")
@@ -453,7 +456,8 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
 
 def coupled_by(forces: SceneForces, weights: Weights) -> list[CableSymbols]:
     """The cables that couple all segments in such a matrix: none in that of the masses."""
-    return forces.coupled if weights.damping != 0 or weights.stiffness != 0 else []
+    in_play = weights.coupled and (weights.damping != 0 or weights.stiffness != 0)
+    return forces.coupled if in_play else []
 
 
 def _slopes_of(cable: CableSymbols) -> list[str]:

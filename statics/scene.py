@@ -101,10 +101,9 @@ class Scene:
 
     @property
     def without_potential(self) -> tuple[str, ...]:
-        """What acts at rest and has no potential, in words."""
+        """What puts in work without having a potential, in words; friction, which has none, only takes it."""
         follows = self.has_followers or any(self.followers_among_driven)
-        rubs = any(kind.rubs for kind in self.cable_kinds)
-        return (*(["follower loads"] if follows else []), *(["cables that rub"] if rubs else []))
+        return ("follower loads",) if follows else ()
 
     @property
     def inputs(self) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """The kernel of a scene at rest: outward poses, residual, elimination, and Newton's method on them."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from statics.codegen import DERIVATION, Recipe
@@ -8,7 +9,7 @@ from statics.scene import Scene
 _HERE = Path(__file__).parent
 _SHARED = (_HERE / "chain.py", _HERE / "search.py")
 _BY_ENERGY, _BY_RESIDUAL = _HERE / "newton.py", _HERE / "balance.py"
-_CABLES = _HERE / "cable_sweep.py"
+_CABLES, _PIVOTS, _HELD = (_HERE / f"{stem}.py" for stem in ("cable_sweep", "pivots", "held_tensions"))
 
 
 def write(scene: Scene) -> str:
@@ -27,9 +28,14 @@ def write(scene: Scene) -> str:
         recursion.observe_step(forces),
     ]
     names = [effect.name for effect in scene.effects]
-    cables = [_CABLES] if forces.coupled else []
-    sources = (*cables, *_SHARED, _BY_ENERGY if forces.conservative else _BY_RESIDUAL)
+    sources = [_CABLES] if forces.coupled else []
+    sources += [*_SHARED, *([_PIVOTS, _BY_ENERGY] if forces.conservative else [_BY_RESIDUAL])]
+    if not (forces.conservative or scene.without_potential):
+        held = recursion.eliminate_step(forces, recursion.HELD)
+        steps.append(replace(held, name="eliminate_held_step"))
+        sources += [_PIVOTS, _HELD]
     return compose("Statics of a planar cable-driven arm.", forces, names, steps, sources)
 
 
-RECIPE = Recipe("statics", write, (*DERIVATION, *_SHARED, _CABLES, _BY_ENERGY, _BY_RESIDUAL, Path(__file__)))
+_SOURCES = (*_SHARED, _CABLES, _PIVOTS, _HELD, _BY_ENERGY, _BY_RESIDUAL, Path(__file__))
+RECIPE = Recipe("statics", write, (*DERIVATION, *_SOURCES))

@@ -117,7 +117,7 @@ def has_potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> bool:
 def have_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
     """Whether every load that acts at rest has a potential; what dissipates never has one."""
     at_rest = [(effect, group) for effect, group in groups if effect.acts_at_rest]
-    if any(effect.account == "dissipated_power" for effect, _ in at_rest):
+    if any(group and effect.account == "dissipated_power" for effect, group in at_rest):
         return False
     return all(has_potential(pair, coordinates) for _, group in at_rest for pair in group)
 

@@ -69,7 +69,7 @@ class Oracle:
         self.cables = scene.arm.cables
         self.drive = np.array([DRIVE[kind] for kind in kinds])
         unloaded = np.zeros((self.arm.n, len(scene.coordinates)))
-        unloaded[:, 0] = self.arm.k0 * self.arm.L0
+        unloaded[:, 0] = np.where(self.arm.k0 == 0.0, 1e-9, self.arm.k0 * self.arm.L0)
         self.rest = self.lengths(unloaded).sum(axis=1)
 
     def lengths(self, q: np.ndarray) -> np.ndarray:

@@ -135,6 +135,7 @@ def _progress(title: str, quiet: bool) -> Iterator[Any]:
 
 def _show(report: dict[str, Any]) -> None:
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
     result: Run = report["run"]
@@ -146,7 +147,7 @@ def _show(report: dict[str, Any]) -> None:
     table.add_column(overflow="fold")
     table.add_row("outcome", f"[bold]{result.outcome}[/bold]")
     if result.message:
-        table.add_row("", result.message)
+        table.add_row("", escape(result.message))
     if result.tip is not None:
         table.add_row("tip", _pose(result.tip))
     if result.static_gap is not None:

@@ -1,0 +1,127 @@
+"""Cables that rub at their holes: two branches at rest, the loop between them, and motion along it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import whole_arm
+from scipy.integrate import trapezoid
+from test_coupled_cables import Oracle
+from whole_arm import gradient
+
+from continuum_dyn import load_scenario, simulate
+from statics import Arm, Bending, Cable, CableFriction, Cables, Extension, Gravity, InputError, Scene, codegen
+from statics.arm import CableKind
+from statics.equilibria import Equilibrium, Slip, StaticSolver
+
+SCENARIOS = Path(__file__).parents[1] / "scenarios"
+FRICTION = 0.3
+
+
+def rubbing(friction: float = FRICTION) -> Scene:
+    cable = Cable("upper", 0.008, friction=friction)
+    effects = (Bending(), Extension(), Gravity(), Cables(), CableFriction())
+    return Scene(Arm.preset("rone2012", cables=(cable,)), effects)
+
+
+def solver_of(scene: Scene) -> StaticSolver:
+    return StaticSolver(scene, codegen.load_interpreted)
+
+
+def turning_angle(point: Equilibrium) -> float:
+    """Sum of the angles by which the holes turn the cable, rad: its last stretch against the base."""
+    return float(point.disk_theta[-1] - point.bend_angle[-1] / 2)
+
+
+def tension_at_the_anchor(scene: Scene, point: Equilibrium) -> float:
+    """From the balance of the last segment alone, without weights: bending moment over the cable's arm."""
+    h = point.bend_angle[-1] / 2
+    by_bend = whole_arm.directional(
+        lambda q: np.sinc(q / 2 / np.pi) * (point.length[-1] - q * 0.008), np.array(2 * h), np.array(1.0)
+    )
+    stiffness = scene.arm.segment_columns()["bending_stiffness"][-1]
+    return float(-stiffness * point.bend_angle[-1] / 0.02 / by_bend)
+
+
+@pytest.mark.parametrize("slip", Slip)
+def test_tension_falls_exponentially_with_the_turning_angle_against_the_slip(slip: Slip) -> None:
+    """Euler's capstan: exp(-mu theta) from end to end, if drawn in, and exp(mu theta) if let out."""
+    scene = Scene(rubbing().arm, (Bending(), Cables(), CableFriction()))
+    point = solver_of(scene).solve(np.array([2.0]), before=slip)
+    expected = 2.0 * np.exp(-slip * FRICTION * turning_angle(point))
+    assert tension_at_the_anchor(scene, point) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("slip", Slip)
+def test_branches_balance_the_forces_of_the_whole_arm(slip: Slip) -> None:
+    scene = rubbing()
+    point = solver_of(scene).solve(np.array([2.0]), before=slip)
+    oracle, q = Oracle(scene, (CableKind(rubs=True),)), point.coordinates
+    oracle.drive = np.array([2.0])
+    tension = oracle.tensions(q, np.full((1, 4), 100.0 * slip), oracle.turns(q))
+    force = gradient(lambda q: whole_arm.potential_energy(oracle.arm, q, np.zeros(1)), q)
+    pull = gradient(oracle.lengths, q).reshape(q.size, -1) @ tension.ravel()
+    assert point.residual < 1e-12
+    assert np.abs(force.ravel() + pull).max() < 1e-12
+
+
+def test_ramp_up_and_down_goes_from_one_branch_to_the_other() -> None:
+    solver = solver_of(rubbing())
+    tensions = np.concatenate([np.linspace(0.0, 2.0, 9), np.linspace(2.0, 0.0, 9)[1:]])
+    points = solver.ramp(tensions[:, None])
+    for tension, point in zip(tensions[2:9], points[2:9], strict=True):
+        drawn_in = solver.solve(np.array([tension]), before=Slip.DRAWN_IN)
+        assert point.tip == pytest.approx(drawn_in.tip, abs=1e-9)
+    for tension, point in zip(tensions[11:-2], points[11:-2], strict=True):
+        let_out = solver.solve(np.array([tension]), before=Slip.LET_OUT)
+        assert point.tip == pytest.approx(let_out.tip, abs=1e-9)
+    assert all(point.stable for point in points)
+
+
+def test_cable_sticks_where_the_ramp_turns_back() -> None:
+    """Lowering the tension by a hundredth moves the arm by less than a tenth of what it would."""
+    moved = []
+    for friction in (FRICTION, 1e-9):
+        points = solver_of(rubbing(friction)).ramp(np.array([[1.0], [2.0], [1.98]]))
+        moved.append(points[1].tip[1] - points[2].tip[1])
+    assert 0.0 <= moved[0] < 0.1 * moved[1]
+
+
+def test_work_around_the_loop_is_what_friction_takes() -> None:
+    """Positive, and in proportion to the friction while that is small; a frictionless loop has none."""
+    tensions = np.concatenate([np.linspace(0.0, 2.0, 41), np.linspace(2.0, 0.0, 41)[1:]])
+    work = []
+    for friction in (1e-9, 0.01, 0.02):
+        points = solver_of(rubbing(friction)).ramp(tensions[:, None])
+        displacement = np.array([point.cable_displacement[0] for point in points])
+        work.append(trapezoid(tensions, displacement))
+    assert abs(work[0]) < 1e-9 * trapezoid(tensions[:41], np.linspace(0, 1e-3, 41))
+    assert work[2] / work[1] == pytest.approx(2.0, rel=0.05)
+
+
+def test_cable_without_friction_leaves_no_trace() -> None:
+    """With a coefficient of zero nothing of it is in the generated source."""
+    from statics import statics_kernel
+
+    without = Scene(rubbing().arm, (Bending(), Extension(), Gravity(), Cables()))
+    sources = [statics_kernel.write(scene).partition("\n\n")[2] for scene in (rubbing(0.0), without)]
+    assert sources[0].partition("import math")[2] == sources[1].partition("import math")[2]
+    assert "tension_lost" not in sources[0]
+
+
+def test_friction_without_cables_is_refused_by_name() -> None:
+    with pytest.raises(InputError, match="'cable_friction' without cables"):
+        Scene(rubbing().arm, (Bending(), CableFriction()))
+
+
+@pytest.mark.slow
+def test_slow_motion_follows_the_loop_of_the_equilibria() -> None:
+    """Within what creeps and lags: 70 um, where the two branches are up to 200 um apart."""
+    run = simulate(load_scenario(SCENARIOS / "friction_motion.toml"))
+    motion, path = run.trajectory, run.static_path
+    assert motion is not None
+    gaps = np.array([point.tip[1] for point in path]) - motion.disk_y[:, -1]
+    assert np.abs(gaps).max() < 7e-5
+    lost = motion.ledger["dissipated_energy"]
+    assert np.diff(lost).min() > -1e-9 * lost[-1]
+    assert np.abs(motion.ledger_gap).max() < 1e-3 * lost[-1]

@@ -1,0 +1,101 @@
+"""Cables driven by their length: elastic, never pushing; at rest, in motion, and holding an arm up."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from continuum_dyn import load_scenario, simulate
+from continuum_dyn.profiles import Step
+from continuum_dyn.study import Solver
+from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Scene, codegen
+from statics.equilibria import Equilibrium, StaticSolver
+
+SCENARIOS = Path(__file__).parents[1] / "scenarios"
+STIFFNESS = 2e4
+
+
+def driven(*cables: Cable, stiffness: float = 1.0, disks: int = 4) -> Scene:
+    arm = Arm.preset("rone2012", disks=disks, youngs_modulus=2.1e11 * stiffness, cables=cables)
+    return Scene(arm, (Bending(), Extension(), Gravity(), Cables()))
+
+
+def at_rest(scene: Scene, *drives: float) -> Equilibrium:
+    inputs = np.pad(drives, (0, len(scene.inputs) - len(drives)))
+    return StaticSolver(scene, codegen.load_interpreted).solve(inputs)
+
+
+BY_LENGTH = Cable("upper", 0.008, cable_stiffness=STIFFNESS)
+
+
+def test_one_segment_bends_as_its_closed_form_says() -> None:
+    """EJ phi / L0 = -T dl/dphi with T = k (l - L0 + delta), l = sigma_0(phi/2) (L0 - phi r)."""
+    arm = Arm(1, 0.02, youngs_modulus=2.1e11, second_moment=2.011e-14, cables=(BY_LENGTH,))
+    found = at_rest(Scene(arm, (Bending(), Cables())), 1e-3)
+
+    def unbalanced(phi: float) -> float:
+        h, r = phi / 2, 0.008
+        chord, slope = np.sin(h) / h, (np.cos(h) - np.sin(h) / h) / phi
+        length = chord * (0.02 - phi * r)
+        tension = STIFFNESS * (length - 0.02 + 1e-3)
+        return 2.1e11 * 2.011e-14 / 0.02 * phi + tension * (slope * (0.02 - phi * r) - chord * r)
+
+    assert found.bend_angle[0] == pytest.approx(brentq(unbalanced, 1e-3, 1.0, xtol=1e-15), rel=1e-10)
+
+
+def test_slack_cable_is_none() -> None:
+    found = at_rest(driven(BY_LENGTH), -2e-3)
+    without = at_rest(Scene(driven(BY_LENGTH).arm, (Bending(), Extension(), Gravity())))
+    assert found.tension[0] == 0.0
+    np.testing.assert_allclose(found.coordinates, without.coordinates, rtol=1e-12, atol=1e-18)
+
+
+@pytest.mark.parametrize("displacement", [5e-4, 2e-3, 4e-3])
+def test_arm_rests_as_under_the_tension_that_the_length_makes(displacement: float) -> None:
+    found = at_rest(driven(BY_LENGTH), displacement)
+    under = at_rest(driven(Cable("upper", 0.008)), float(found.tension[0]))
+    np.testing.assert_allclose(found.coordinates, under.coordinates, rtol=1e-9, atol=1e-13)
+    drawn_in = under.cable_displacement[0] + found.tension[0] / STIFFNESS
+    assert drawn_in == pytest.approx(displacement, abs=1e-12)
+
+
+def test_cables_of_given_length_hold_an_arm_up_that_would_buckle() -> None:
+    """Upright, and too soft to stand by itself: unstable without cables or under tensions, stable held."""
+    offsets = (0.008, -0.008)
+    held = driven(*(Cable(f"{r}", r, cable_stiffness=STIFFNESS) for r in offsets), stiffness=0.003)
+    pulled = driven(*(Cable(f"{r}", r) for r in offsets), stiffness=0.003)
+    effects = (Bending(), Extension(), Gravity((-9.81, 0.0)), Cables())
+    upright = [Scene(scene.arm, effects) for scene in (held, pulled)]
+    stands = at_rest(upright[0], 1e-5, 1e-5)
+    falls = at_rest(upright[1], *stands.tension)
+    assert stands.stable
+    assert np.abs(stands.bend_angle).max() < 1e-12
+    assert np.abs(falls.bend_angle).max() > 0.1
+
+
+@pytest.mark.slow
+def test_motion_with_a_cable_that_goes_slack_and_catches_keeps_its_ledger() -> None:
+    scenario = load_scenario(SCENARIOS / "length_driven.toml")
+    run = simulate(replace(scenario, solver=Solver("chain", rtol=1e-9, atol=1e-11)))
+    motion = run.trajectory
+    assert motion is not None
+    lower = motion.tension[:, 1]
+    assert (np.diff((lower > 0.0).astype(int)) > 0).any()  # it catches
+    assert lower.min() == 0.0
+    energy = max(np.abs(values).max() for name, values in motion.ledger.items() if "power" not in name)
+    assert np.abs(motion.ledger_gap).max() < 2e-5 * energy
+    assert run.static_gap is not None
+    assert run.static_gap < 2e-6
+
+
+@pytest.mark.slow
+def test_jump_of_the_length_puts_its_work_into_the_ledger() -> None:
+    scenario = load_scenario(SCENARIOS / "length_driven.toml")
+    steps = (Step(0.0, 5e-4, at=0.01), Step(0.0, -1e-3, at=0.01))
+    motion = simulate(replace(scenario, tension=steps)).trajectory
+    assert motion is not None
+    work = motion.ledger["input_work"]
+    assert np.diff(work).max() > 0.5 * STIFFNESS * 4e-4**2
+    assert np.abs(motion.ledger_gap).max() < 1e-3 * np.abs(work).max()
