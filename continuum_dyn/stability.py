@@ -38,12 +38,12 @@ class Growth:
 def growth_about(dynamics: Dynamics, point: Equilibrium) -> Growth | None:
     """What grows of the small motions about an equilibrium, under its inputs; None if nothing does."""
     rates = _eigenvalues(dynamics, point)
-    sizes = np.abs(rates)
-    grow = (rates.real > NEUTRAL * sizes) & (rates.imag >= 0.0) & (sizes > NEUTRAL * sizes.max())
+    growth, turning, sizes = np.real(rates), np.imag(rates), np.abs(rates)
+    grow = (growth > NEUTRAL * sizes) & (turning >= 0.0) & (sizes > NEUTRAL * sizes.max())
     if not grow.any():
         return None
-    fastest = rates[grow][np.argmax(rates[grow].real)]
-    return Growth(int(grow.sum()), float(fastest.real), float(fastest.imag) / (2.0 * np.pi))
+    fastest = np.argmax(np.where(grow, growth, 0.0))
+    return Growth(int(grow.sum()), float(growth[fastest]), float(turning[fastest]) / (2.0 * np.pi))
 
 
 def _eigenvalues(dynamics: Dynamics, point: Equilibrium) -> Any:

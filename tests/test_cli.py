@@ -120,7 +120,7 @@ def test_explain_says_what_each_effect_adds_and_how_the_arm_at_rest_swings() -> 
 def test_explain_of_statics_counts_operations_and_says_why_there_are_no_modes() -> None:
     result = runner.invoke(app, ["explain", str(SCENARIOS / "tension_ramp.toml")])
     assert result.exit_code == 0
-    assert "No modes: motion needs the effect 'inertia'" in result.stdout
+    assert "No modes: modes need the effect 'inertia'" in result.stdout
     assert "all of them" in result.stdout
     assert max(map(len, result.stdout.splitlines())) <= 80
 
