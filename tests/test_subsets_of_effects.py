@@ -92,11 +92,13 @@ class Chain:
         self.q, self.u = q, u
 
     def accelerations(self) -> np.ndarray:
+        """Of the coordinates, shape of q."""
         q, chain, w = self.q, np.empty((len(self.q), self.run.CHAIN_COLUMNS)), np.empty_like(self.q)
         self.run.acceleration(q, self.u, self.inputs, *self.tables, chain, w)
         return w
 
     def base_power(self) -> float:
+        """What the base does on the arm, W."""
         power = np.zeros(1)
         self.run.add_base_power(self.q[None], self.u[None], self.inputs[None], *self.tables, power)
         return power[0]

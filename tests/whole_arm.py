@@ -306,7 +306,7 @@ def _payload_bodies(
 def kane_equations(
     n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...] = (), free: bool = False
 ) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
-    """Mass matrix M and forcing f of M u' = f: rates of all bends, all elongations, and of a ``free`` base's pose.
+    """Mass matrix M and forcing f of M u' = f: rates of all bends, all elongations, and of a ``free`` base.
 
     What holds such a base, or drives it, is for the caller to add.
     """
@@ -320,9 +320,7 @@ def kane_equations(
     loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames), *weights]
     for c in range(cables):
         loads += _cable_forces(s, c, frames, centers)
-    kane = KanesMethod(
-        s.world, s.q, s.u, kd_eqs=[sp.diff(q, "t") - u for q, u in zip(s.q, s.u, strict=True)]
-    )
+    kane = KanesMethod(s.world, s.q, s.u, kd_eqs=[sp.diff(q, "t") - u for q, u in zip(s.q, s.u, strict=True)])
     kane.kanes_equations([*disks, *payloads], loads)
     return s, kane.mass_matrix, kane.forcing + _axial_forces(s)
 
