@@ -10,8 +10,8 @@ included, with its sign turned:
 since dV/dt = A + omega_b z x v, and v . (z x v) = 0. Loads between segments balance, and do no work along V.
 The second sum, ``transport_power``, follows from coordinates and rates: it is what a motion integrates. The
 first, ``transport_energy``, is zero while the base is at rest, and is added where the work is read. For a
-disk, whose payloads may stand beside its centre, m v is the momentum dT/du of its pose, and F its load,
-with a moment each.
+disk, whose payloads may stand beside its centre, m v is the momentum dT/du of its pose, and F its load, each
+with a moment.
 """
 
 from dataclasses import replace

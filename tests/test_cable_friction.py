@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 import whole_arm
 from scipy.integrate import trapezoid
-from test_coupled_cables import Oracle
 from whole_arm import gradient
+from whole_cables import WholeCables
 
 from continuum_dyn import load_scenario, simulate
 from statics import Arm, Bending, Cable, CableFriction, Cables, Extension, Gravity, InputError, Scene, codegen
-from statics.arm import CableKind
 from statics.equilibria import Equilibrium, Slip, StaticSolver
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
@@ -56,8 +55,7 @@ def test_tension_falls_exponentially_with_the_turning_angle_against_the_slip(sli
 def test_branches_balance_the_forces_of_the_whole_arm(slip: Slip) -> None:
     scene = rubbing()
     point = solver_of(scene).solve(np.array([2.0]), before=slip)
-    oracle, q = Oracle(scene, (CableKind(rubs=True),)), point.coordinates
-    oracle.drive = np.array([2.0])
+    oracle, q = WholeCables(scene, np.array([2.0])), point.coordinates
     tension = oracle.tensions(q, np.full((1, 4), 100.0 * slip), oracle.turns(q))
     force = gradient(lambda q: whole_arm.potential_energy(oracle.arm, q, np.zeros(1)), q)
     pull = gradient(oracle.lengths, q).reshape(q.size, -1) @ tension.ravel()

@@ -1,8 +1,4 @@
-"""Cables that rub or are driven by length: the chain's tensions, forces and matrices against the whole arm's.
-
-The oracle places every hole, measures lengths and turning angles there, and applies the two laws stretch by
-stretch; it shares nothing with the program but the numbers of a scene. Kernels run as plain Python.
-"""
+"""Cables that rub or are driven by length: the chain's forces and matrices against the whole arm's."""
 
 from typing import Any
 
@@ -10,6 +6,7 @@ import numpy as np
 import pytest
 import whole_arm
 from whole_arm import difference_matrix, directional, gradient, random_state, relative_error
+from whole_cables import WholeCables
 
 from continuum_dyn import motion_kernel
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
@@ -30,7 +27,7 @@ from statics.arm import CableKind
 TENSION, RUBS = CableKind(), CableKind(rubs=True)
 LENGTH, BOTH = CableKind(driven_by_length=True), CableKind(driven_by_length=True, rubs=True)
 KINDS = [(RUBS,), (LENGTH,), (BOTH,), (BOTH, TENSION, RUBS)]
-STIFFNESS, SLIP_SPEED = 300.0, 0.02
+STIFFNESS, SLIP_SPEED, DRAWING = 300.0, 0.02, 0.05
 DRIVE = {TENSION: 0.7, RUBS: 1.3, LENGTH: 0.02, BOTH: 0.025}
 """Tensions (N), or displacements (m) that leave no cable slack in any of the states below."""
 
@@ -61,51 +58,16 @@ def scene_of(kinds: tuple[CableKind, ...], subsegments: int = 1, *, moves: bool 
     return Scene(arm, [Bending(), Extension(), Gravity(), Cables(), *friction, *motion])
 
 
-class Oracle:
-    """Tensions of all cables on all stretches, shape (cables, disks), from the places of the holes."""
+def drive_of(kinds: tuple[CableKind, ...]) -> np.ndarray:
+    return np.array([DRIVE[kind] for kind in kinds])
 
-    def __init__(self, scene: Scene, kinds: tuple[CableKind, ...]) -> None:
-        self.arm, self.kinds = whole_arm.whole_arm(scene), kinds
-        self.cables = scene.arm.cables
-        self.drive = np.array([DRIVE[kind] for kind in kinds])
-        unloaded = np.zeros((self.arm.n, len(scene.coordinates)))
-        unloaded[:, 0] = np.where(self.arm.k0 == 0.0, 1e-9, self.arm.k0 * self.arm.L0)
-        self.rest = self.lengths(unloaded).sum(axis=1)
 
-    def lengths(self, q: np.ndarray) -> np.ndarray:
-        """Hole-to-hole lengths up to the anchors, shape (cables, disks)."""
-        return self.arm.tension_along(whole_arm.cable_lengths(self.arm, q))
-
-    def beyond(self, q: np.ndarray) -> np.ndarray:
-        """Lengths beyond the near hole of each stretch."""
-        return np.cumsum(self.lengths(q)[:, ::-1], axis=1)[:, ::-1]
-
-    def turns(self, q: np.ndarray) -> np.ndarray:
-        """Angle by which each near hole turns the cable; the drive pulls along the base's normal."""
-        x, y, theta = (
-            np.concatenate([[0], values])[:: self.arm.step] for values in whole_arm.poses(self.arm, q)
-        )
-        turns = np.empty_like(self.arm.r_h[:, 1:])
-        for c, r_h in enumerate(self.arm.r_h):
-            way = np.diff((x - r_h * np.sin(theta)) + 1j * (y + r_h * np.cos(theta)))
-            turns[c] = np.angle(way / np.concatenate([[1.0], way[:-1]]))
-        return turns
-
-    def drives(self, q: np.ndarray) -> np.ndarray:
-        """Tension of each cable at the base."""
-        stretch = self.beyond(q)[:, 0] - self.rest + self.drive
-        by_length = np.array([kind.driven_by_length for kind in self.kinds])
-        return np.where(by_length, STIFFNESS * np.where(np.real(stretch) > 0, stretch, 0), self.drive)
-
-    def tensions(self, q: np.ndarray, slip: np.ndarray, turns: np.ndarray) -> np.ndarray:
-        """By the capstan law, for slips in units of what friction wants."""
-        friction = np.array([cable.friction for cable in self.cables])[:, None]
-        fall = np.cumsum(-friction * np.abs(turns) * np.tanh(slip), axis=1)
-        return self.drives(q)[:, None] * np.exp(fall)
-
-    def in_motion(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """Those of a moving arm."""
-        return self.tensions(q, -directional(self.beyond, q, u) / SLIP_SPEED, self.turns(q))
+def pieces_of(scene: Scene, drive: np.ndarray) -> np.ndarray:
+    """Inputs that stay as they are; cables driven by length are said to be drawn in, all the same."""
+    pieces = np.zeros((len(scene.inputs), 6))
+    pieces[:, 1] = DRAWING
+    pieces[: drive.size, 1] = drive
+    return pieces
 
 
 def kernel_of(scene: Scene, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
@@ -119,8 +81,11 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
     kinds: tuple[CableKind, ...], subsegments: int
 ) -> None:
     scene = scene_of(kinds, subsegments, moves=True)
-    oracle, (kernel, segments, disks) = Oracle(scene, kinds), kernel_of(scene, motion_kernel.RECIPE)
-    pieces = np.array([[0.0, value, 0.0, 0.0, 0.0] for value in oracle.drive])
+    oracle, (kernel, segments, disks) = (
+        WholeCables(scene, drive_of(kinds)),
+        kernel_of(scene, motion_kernel.RECIPE),
+    )
+    pieces = pieces_of(scene, oracle.drive)
     for seed in range(3):
         q, u = random_state(scene, seed, bend=0.7)
         y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
@@ -128,7 +93,8 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
         expected = whole_arm.accelerations(oracle.arm, q, u, oracle.in_motion(q, u))
         assert relative_error(rate[q.size : 2 * q.size].reshape(q.shape), expected) < 1e-11
         drives, lengths = oracle.drives(q), oracle.lengths
-        pulled_in = -drives @ directional(lengths, q, u).sum(axis=1)
+        speed = np.where(oracle.stiffness > 0.0, DRAWING, -directional(lengths, q, u).sum(axis=1))
+        pulled_in = drives @ speed
         lost = np.sum((drives[:, None] - oracle.in_motion(q, u)) * -directional(lengths, q, u))
         core = rate[-1] - lost
         assert rate[-2] == pytest.approx(pulled_in, rel=1e-11)
@@ -140,7 +106,7 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
 def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...]) -> None:
     scene = scene_of(kinds, moves=True)
     kernel, segments, disks = kernel_of(scene, motion_kernel.RECIPE)
-    pieces = np.array([[0.0, DRIVE[kind], 0.0, 0.0, 0.0] for kind in kinds])
+    pieces = pieces_of(scene, drive_of(kinds))
     q, u = random_state(scene, seed=1, bend=0.7)
     numbers = pieces, segments, disks, q.shape[1]
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
@@ -161,7 +127,7 @@ def newton_step(scene: Scene, q: np.ndarray, drive: np.ndarray, before: np.ndarr
     chain, pivots = np.empty((len(q), kernel.CHAIN_COLUMNS)), np.empty((len(q), 3))
     kernel.pose_sweep(q, drive, segments, disks, chain)
     kernel.residual_sweep(disks, chain, residual)
-    conservative = hasattr(kernel, "PIVOT_COLUMNS")
+    conservative = not hasattr(kernel, "ELIMINATE_HELD_START")
     start = (0.0, 0.0, 1.0, *kernel.ELIMINATE_START[3:]) if conservative else kernel.ELIMINATE_START
     counted = kernel.eliminate_sweep(start, segments, disks, chain, residual, descent, pivots)[0]
     kernel.substitute_sweep(chain, descent, change)
@@ -175,7 +141,7 @@ def test_newton_step_at_rest_solves_the_dense_system_but_for_turning_angles(
 ) -> None:
     """What changes of turning angles do to tensions is left out of the matrix, and of this one, too."""
     scene = scene_of(kinds, subsegments)
-    oracle, slip_length = Oracle(scene, kinds), 1e-6 * scene.arm.total_length
+    oracle, slip_length = WholeCables(scene, drive_of(kinds)), 1e-6 * scene.arm.total_length
     unit = np.tile([1.0, scene.arm.rest_length], scene.arm.segments)
     for seed in range(4):
         q, _ = random_state(scene, seed, bend=0.7)

@@ -1,5 +1,6 @@
 """Over the registry: every effect names what it is made of, and leaves no trace where it is left out."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from continuum_dyn.virtual_power import derive_dynamics, partial_velocity
 from statics import (
     Arm,
     Bending,
+    CableFriction,
     Cables,
     DiskLoad,
     DiskLoads,
@@ -37,12 +39,13 @@ from statics.quantities import QUANTITIES
 from statics.segment import DiskSymbols, SegmentSymbols
 from statics.virtual_work import collect, partial_displacement
 
-ARM = Arm.preset("rone2012", cables=(UPPER,))
+ARM = Arm.preset("rone2012", cables=(replace(UPPER, friction=0.2),))
 ONE_OF_EACH: tuple[Effect, ...] = (
     Bending(),
     Extension(),
     Gravity(),
     Cables(),
+    CableFriction(),
     DiskLoads(loads=(DiskLoad(4, (0.1, -0.2), 0.3),)),
     Inertia(),
     RotaryInertia(),
@@ -65,6 +68,7 @@ TRACES = {
     "extension": ("elongation", "axial_stiffness"),
     "gravity": ("gravity_x", "gravity_y"),
     "cables": ("tension_1", "hole_offset_1", "cable_passes_1"),
+    "cable_friction": ("friction_1", "tension_lost_1", "math.tanh"),
     "loads": ("load_force_x", "load_force_y", "load_moment"),
     "inertia": ("far_acceleration_0*node_mass",),
     "rotary_inertia": ("far_angular_acceleration*node_inertia",),
@@ -76,8 +80,18 @@ TRACES = {
 """Names that an effect, and nothing else, brings into a generated kernel."""
 
 
+DAMPING = [
+    name
+    for name, effect in EFFECTS.items()
+    if effect.account == "dissipated_power" and not effect.acts_at_rest
+]
+"""What dissipates in each place by itself; friction does so along a whole cable."""
+
+
 def everything_but(name: str) -> Scene:
-    return Scene(ARM, (effect for effect in ONE_OF_EACH if effect.name != name))
+    """Friction goes with the cables."""
+    gone = {name, "cable_friction"} if name == "cables" else {name}
+    return Scene(ARM, (effect for effect in ONE_OF_EACH if effect.name not in gone))
 
 
 def test_one_of_each_is_every_registered_effect() -> None:
@@ -88,7 +102,7 @@ def test_one_of_each_is_every_registered_effect() -> None:
 def test_effect_names_its_quantities_and_its_source(effect: Effect) -> None:
     assert effect.source
     assert set(effect.quantities) <= set(QUANTITIES)
-    assert set(effect.columns(ARM)) == set(effect.quantities)
+    assert {name.removesuffix("_1") for name in effect.columns(ARM)} == set(effect.quantities)
     assert set(effect.coordinates) <= set(QUANTITIES)
     assert type(effect).__doc__
 
@@ -158,7 +172,7 @@ def _free_symbols(load: object) -> set[object]:
     return set().union(*(getattr(part, "free_symbols", set()) for part in parts))
 
 
-@pytest.mark.parametrize("name", [name for name in EFFECTS if EFFECTS[name].account == "dissipated_power"])
+@pytest.mark.parametrize("name", DAMPING)
 def test_what_dissipates_takes_energy_in_any_motion_and_has_a_symmetric_damping_matrix(name: str) -> None:
     effect = next(effect for effect in ONE_OF_EACH if effect.name == name)
     forces = derive_dynamics(Scene(ARM, {effect, Extension()}))

@@ -12,12 +12,24 @@ from pydantic import ValidationError
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.integrators import METHODS
-from continuum_dyn.profiles import TIME_RESOLUTION, Constant, Profile, Ramp, Sine, Step, Table, lowest, spans
+from continuum_dyn.profiles import (
+    TIME_RESOLUTION,
+    Constant,
+    Profile,
+    Ramp,
+    Sine,
+    SmoothRamp,
+    Step,
+    Table,
+    lowest,
+    spans,
+)
+from continuum_dyn.smooth_motion import Rate
 from continuum_dyn.study import Method, MotionStudy, Solver
 from statics import InputError
 
 
-def sampled(profile: Profile, times: np.ndarray, duration: float) -> np.ndarray:
+def sampled(profile: Profile | Rate, times: np.ndarray, duration: float) -> np.ndarray:
     stretches = spans((profile,), duration)
     values = np.empty(times.size)
     for span in stretches:
@@ -37,7 +49,12 @@ TIMES = np.linspace(0.0, 2.0, 401)
         (Step(before=1.0, after=3.0), lambda t: np.full_like(t, 3.0)),
         (Ramp(1.0, 2.0, 0.5, 1.5), lambda t: np.interp(t, [0.5, 1.5], [1.0, 2.0])),
         (Ramp(1.0, 2.0, 0.0, 1.5), lambda t: np.interp(t, [0.0, 1.5], [1.0, 2.0])),
+        (
+            SmoothRamp(1.0, 2.0, 0.5, 1.5),
+            lambda t: 1.5 - 0.5 * np.cos(np.pi * np.interp(t, [0.5, 1.5], [0.0, 1.0])),
+        ),
         (Sine(1.0, 0.5, 2.0), lambda t: 1.0 + 0.5 * np.sin(4 * np.pi * t)),
+        (Sine(1.0, 0.5, 2.0, phase=0.7), lambda t: 1.0 + 0.5 * np.sin(4 * np.pi * t + 0.7)),
         (Table((0.3, 0.9, 1.2), (1.0, 2.0, 0.0)), lambda t: np.interp(t, [0.3, 0.9, 1.2], [1.0, 2.0, 0.0])),
         (Table((-1.0, 1.0), (1.0, 2.0)), lambda t: np.interp(t, [-1.0, 1.0], [1.0, 2.0])),
         (Table((5.0,), (1.0,)), lambda t: np.full_like(t, 1.0)),
@@ -47,6 +64,15 @@ def test_profile_has_the_values_that_its_name_says(
     profile: Profile, expected: Callable[[np.ndarray], np.ndarray]
 ) -> None:
     np.testing.assert_allclose(sampled(profile, TIMES, 2.0), expected(TIMES), atol=1e-14)
+
+
+@pytest.mark.parametrize("profile", [Sine(1.0, 0.5, 2.0, phase=0.7), SmoothRamp(1.0, 2.0, 0.5, 1.5)])
+def test_rate_is_the_derivative_of_the_profile(profile: Profile) -> None:
+    """By central differences, away from the kinks at 0.5 and 1.5 s."""
+    times, step = np.array([0.1, 0.6, 1.0, 1.4, 1.9]), 1e-5
+    for first, second in ((profile, Rate(profile)), (Rate(profile), Rate(Rate(profile)))):
+        ahead, behind = (sampled(first, times + sign * step, 2.0) for sign in (1, -1))
+        np.testing.assert_allclose(sampled(second, times, 2.0), (ahead - behind) / (2 * step), atol=1e-6)
 
 
 @given(rows=st.dictionaries(st.floats(-3.0, 3.0).map(lambda t: t + 0.0), st.floats(0.0, 10.0), min_size=1))
@@ -98,6 +124,7 @@ def test_motion_starts_from_the_equilibrium_before_a_step_at_zero() -> None:
     "wrong",
     [
         lambda: Ramp(0.0, 1.0, 1.0, 1.0),
+        lambda: SmoothRamp(0.0, 1.0, 1.0, 0.5),
         lambda: Table((0.0, 1.0, 0.5), (0.0, 1.0, 2.0)),
         lambda: Table((0.0, 1.0), (0.0,)),
         lambda: Table((0.0, 5e-324), (0.0, 1.0)),
@@ -116,6 +143,7 @@ def test_profiles_that_cannot_be_are_refused(wrong: Callable[[], Profile]) -> No
         (Step(1.0, -1.0), -1.0),
         (Ramp(3.0, 1.0, 0.0, 1.0), 1.0),
         (Sine(1.0, -1.5, 2.0), -0.5),
+        (SmoothRamp(3.0, 1.0, 0.0, 1.0), 1.0),
         (Table((0.0, 1.0), (2.0, -3.0)), -3.0),
     ],
 )

@@ -47,7 +47,7 @@ def test_every_scenario_of_the_repository_loads_and_opens_with_what_it_shows(pat
         ("[arm]", "[amr]", "Did you mean 'arm'?"),
         ("name", "nam", "Did you mean 'name'?"),
         ("before", "befor", "Did you mean 'before'?"),
-        ('"step"', '"stpe"', "Did you mean 'step'? Known: constant, step, ramp, sine, table"),
+        ('"step"', '"stpe"', "Did you mean 'step'? Known: constant, step, ramp, smooth_ramp, sine, table"),
         ('"step_response"', '"step_respose"', "Did you mean 'step_response'?"),
         ('"rone2012"', '"rone2021"', "Did you mean 'rone2012'?"),
         ("hole_offset = 0.008", "", "missing 'hole_offset'"),

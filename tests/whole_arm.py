@@ -42,6 +42,7 @@ class WholeArm:
     ``r_h`` has shape (cables, disks + 1), the base's first; ``last`` (the anchor's disk) has one number for
     each cable; ``relaxation`` is eta / E. ``payload`` holds mass, inertia and offset of each, shape
     (payloads, 4), and ``carriers`` the ends that they are fixed to.
+    ``base`` holds the pose and the velocity of a base that is not at the origin, shape (2, 3), or is None.
     """
 
     n: int
@@ -62,6 +63,7 @@ class WholeArm:
     follower: np.ndarray
     payload: np.ndarray
     carriers: tuple[int, ...]
+    base: np.ndarray | None
 
     @property
     def numbers(self) -> list[float]:
@@ -78,7 +80,8 @@ class WholeArm:
 
         Takes one tension for each cable, or all of that shape.
         """
-        along = np.array(tension).reshape(len(self.last), -1)
+        along = np.array(tension)
+        along = along[:, None] if along.ndim == 1 else along
         return along * (np.arange(1, self.n // self.step + 1) <= self.last[:, None])
 
 
@@ -120,6 +123,7 @@ def whole_arm(scene: Scene) -> WholeArm:
         follower=follower,
         payload=np.array([(p.mass, p.inertia, *p.offset) for p in arm.payloads]).reshape(-1, 4),
         carriers=tuple(step * payload.disk for payload in arm.payloads),
+        base=None if arm.base is None else np.array([arm.base_pose, (0.0, 0.0, 0.0)]),
     )
 
 
@@ -198,7 +202,7 @@ def relative_error(actual: np.ndarray, expected: np.ndarray) -> float:
 class _Symbols:
     """What the equations of motion are written in."""
 
-    def __init__(self, n: int, extends: bool, cables: int, step: int, payloads: int) -> None:
+    def __init__(self, n: int, extends: bool, cables: int, step: int, payloads: int, free: bool) -> None:
         self.step = step
         self.phi, self.phi_rate = dynamicsymbols(f"phi1:{n + 1}"), dynamicsymbols(f"omega1:{n + 1}")
         self.e = dynamicsymbols(f"e1:{n + 1}") if extends else ()
@@ -210,7 +214,11 @@ class _Symbols:
         self.tension = sp.Matrix(cables, n // step, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
         self.load = sp.Matrix(n, 5, lambda i, a: sp.Symbol(f"load{i}_{a}"))
         self.payload = sp.Matrix(payloads, 4, lambda i, a: sp.Symbol(f"payload{i}_{a}"))
-        self.q, self.u = [*self.phi, *self.e], [*self.phi_rate, *self.e_rate]
+        self.world = ReferenceFrame("N")
+        self.base = dynamicsymbols("x_b y_b theta_b") if free else ()
+        self.base_rate = dynamicsymbols("v_x v_y omega_b") if free else ()
+        self.q = [*self.phi, *self.e, *self.base]
+        self.u = [*self.phi_rate, *self.e_rate, *self.base_rate]
 
     @property
     def arguments(self) -> list[Any]:
@@ -223,19 +231,21 @@ class _Symbols:
 
 def _place_disks(s: _Symbols) -> tuple[list[ReferenceFrame], list[Point]]:
     """Frames and centres of the base and of all disks, with their velocities. Rone 2012, Eq. 10-12."""
-    frames, centers = [ReferenceFrame("N")], [Point("O")]
-    base = frames[0]
-    centers[0].set_vel(base, 0)
+    world, frames, centers = s.world, [ReferenceFrame("B")], [Point("O")]
+    (_, _, angle), (v_x, v_y, omega) = s.base or (0, 0, 0), s.base_rate or (0, 0, 0)
+    frames[0].orient_axis(world, angle, world.z)
+    frames[0].set_ang_vel(world, omega * world.z)
+    centers[0].set_vel(world, v_x * world.x + v_y * world.y)
     for i, phi in enumerate(s.phi):
         L = s.core[0][i] + s.e[i] if s.e else s.core[0][i]
         k = phi / L
         x, y = sp.sin(phi) / k, (1 - sp.cos(phi)) / k
         near, frame = frames[-1], ReferenceFrame(f"A{i + 1}")
-        frame.orient_axis(base, sum(s.phi[: i + 1]), base.z)
-        frame.set_ang_vel(base, sum(s.phi_rate[: i + 1]) * base.z)
+        frame.orient_axis(world, sum(s.phi[: i + 1], angle), world.z)
+        frame.set_ang_vel(world, sum(s.phi_rate[: i + 1], omega) * world.z)
         center = centers[-1].locatenew(f"P{i + 1}", x * near.x + y * near.y)
         center.set_vel(near, s.rate(x) * near.x + s.rate(y) * near.y)
-        center.v1pt_theory(centers[-1], base, near)
+        center.v1pt_theory(centers[-1], world, near)
         frames.append(frame)
         centers.append(center)
     return frames, centers
@@ -244,12 +254,12 @@ def _place_disks(s: _Symbols) -> tuple[list[ReferenceFrame], list[Point]]:
 def _disk_loads(s: _Symbols, frames: list[ReferenceFrame], centers: list[Point]) -> list[Any]:
     """Weights (Eq. 19), dead loads, and forces that turn with their disk."""
     *_, g_x, g_y, _relaxation = s.numbers
-    base, loads = frames[0], []
+    world, loads = s.world, []
     for i, (frame, center) in enumerate(zip(frames[1:], centers[1:], strict=True)):
-        weight = s.m[i] * g_x * base.x + s.m[i] * g_y * base.y
-        dead = s.load[i, 0] * base.x + s.load[i, 1] * base.y
+        weight = s.m[i] * g_x * world.x + s.m[i] * g_y * world.y
+        dead = s.load[i, 0] * world.x + s.load[i, 1] * world.y
         loads.append((center, weight + dead + s.load[i, 3] * frame.x + s.load[i, 4] * frame.y))
-        loads.append((frame, s.load[i, 2] * base.z))
+        loads.append((frame, s.load[i, 2] * world.z))
     return loads
 
 
@@ -267,16 +277,16 @@ def _axial_forces(s: _Symbols) -> sp.Matrix:
     """Generalized forces of a Kelvin-Voigt core along its length: they work along e alone."""
     (L0, _EJ, EA, _k0), (*_, relaxation) = s.core, s.numbers
     along = [-EA[i] / L0[i] * (e + relaxation * s.e_rate[i]) for i, e in enumerate(s.e)]
-    return sp.Matrix([*[0] * len(s.phi), *along])
+    return sp.Matrix([*[0] * len(s.phi), *along, *[0] * len(s.base)])
 
 
 def _cable_forces(s: _Symbols, c: int, frames: list[ReferenceFrame], centers: list[Point]) -> list[Any]:
     """One cable's pulls from hole to hole, on both of any two neighbouring disks (Eq. 22-24)."""
-    base, loads, holes = frames[0], [], []
+    loads, holes = [], []
     disks = frames[:: s.step]
     for i, (frame, center) in enumerate(zip(disks, centers[:: s.step], strict=True)):
         hole = center.locatenew(f"{center.name}_hole{c}", s.r_h[c, i] * frame.y)
-        hole.v2pt_theory(center, base, frame)
+        hole.v2pt_theory(center, s.world, frame)
         holes.append(hole)
     for i, near in enumerate(disks[:-1]):
         way = holes[i + 1].pos_from(holes[i]).express(near)
@@ -290,23 +300,26 @@ def _payload_bodies(
 ) -> tuple[list[RigidBody], list[Any]]:
     """A body of its own for each payload, fixed to its disk, and its weight."""
     *_, g_x, g_y, _relaxation = s.numbers
-    base, bodies, loads = frames[0], [], []
+    world, bodies, loads = s.world, [], []
     for number, carrier in enumerate(carriers):
         m, I, along, across = s.payload.row(number)  # noqa: E741
         frame, center = frames[carrier], centers[carrier]
         own = center.locatenew(f"payload{number}", along * frame.x + across * frame.y)
-        own.v2pt_theory(center, base, frame)
+        own.v2pt_theory(center, world, frame)
         bodies.append(RigidBody(f"payload{number}", own, frame, m, (inertia(frame, 0, 0, I), own)))
-        loads.append((own, m * g_x * base.x + m * g_y * base.y))
+        loads.append((own, m * g_x * world.x + m * g_y * world.y))
     return bodies, loads
 
 
 @cache
 def kane_equations(
-    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...] = ()
+    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...] = (), free: bool = False
 ) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
-    """Mass matrix M and forcing f of M u' = f, rates of all bends before those of all elongations."""
-    s = _Symbols(n, extends, cables, step, len(carriers))
+    """Mass matrix M and forcing f of M u' = f: rates of all bends, all elongations, and of a ``free`` base.
+
+    What holds such a base, or drives it, is for the caller to add.
+    """
+    s = _Symbols(n, extends, cables, step, len(carriers), free)
     frames, centers = _place_disks(s)
     disks = [
         RigidBody(f"disk{i}", centers[i], frames[i], m, (inertia(frames[i], 0, 0, I_xx), centers[i]))
@@ -316,18 +329,16 @@ def kane_equations(
     loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames), *weights]
     for c in range(cables):
         loads += _cable_forces(s, c, frames, centers)
-    kane = KanesMethod(
-        frames[0], s.q, s.u, kd_eqs=[sp.diff(q, "t") - u for q, u in zip(s.q, s.u, strict=True)]
-    )
+    kane = KanesMethod(s.world, s.q, s.u, kd_eqs=[sp.diff(q, "t") - u for q, u in zip(s.q, s.u, strict=True)])
     kane.kanes_equations([*disks, *payloads], loads)
     return s, kane.mass_matrix, kane.forcing + _axial_forces(s)
 
 
 @cache
 def _kane_function(
-    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...], module: str
+    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...], free: bool, module: str
 ) -> Callable[..., tuple[Any, Any]]:
-    s, mass, forcing = kane_equations(n, extends, cables, step, carriers)
+    s, mass, forcing = kane_equations(n, extends, cables, step, carriers, free)
     return sp.lambdify(s.arguments, (mass, forcing), modules=module, cse=True)
 
 
@@ -335,15 +346,29 @@ def _arguments(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray)
     load = np.column_stack([arm.force, arm.moment, arm.follower])
     tensions, numbers = arm.tension_along(tension), [np.array(arm.numbers), *arm.core, arm.m, arm.I_xx]
     numbers.append(arm.r_h.ravel())
-    return [q.T.ravel(), u.T.ravel(), *numbers, tensions.ravel(), load.ravel(), arm.payload.ravel()]
+    numbers += [tensions.ravel(), load.ravel(), arm.payload.ravel()]
+    base, base_rate = np.empty((2, 0)) if arm.base is None else arm.base
+    return [np.append(q.T, base), np.append(u.T, base_rate), *numbers]
+
+
+def _equations(arm: WholeArm, module: str) -> Callable[..., tuple[Any, Any]]:
+    structure = (arm.n, arm.extends, len(arm.r_h), arm.step, arm.carriers, arm.base is not None)
+    return _kane_function(*structure, module)
 
 
 def mass_and_forcing(
     arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """M, shape (q.size, q.size), and f, shape (q.size,), at one state."""
-    equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, arm.carriers, "numpy")
-    mass, forcing = equations(*_arguments(arm, q, u, tension))
+    """M, shape (q.size, q.size), and f, shape (q.size,), at one state, on a base without acceleration."""
+    mass, forcing = free_mass_and_forcing(arm, q, u, tension)
+    return mass[: q.size, : q.size], forcing[: q.size]
+
+
+def free_mass_and_forcing(
+    arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """M and f with a base's three at the end, where M u' - f is its wrench on the arm."""
+    mass, forcing = _equations(arm, "numpy")(*_arguments(arm, q, u, tension))
     return mass, forcing[:, 0]
 
 
@@ -358,8 +383,8 @@ def precise_accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: 
     bent[q[:, 0] == 0, 0] = "1e-40"
     with mpmath.workdps(200):
         numbers = [[mpmath.mpf(value) for value in values] for values in _arguments(arm, bent, u, tension)]
-        equations = _kane_function(arm.n, arm.extends, len(arm.r_h), arm.step, arm.carriers, "mpmath")
-        solution = mpmath.lu_solve(*equations(*numbers))
+        mass, forcing = _equations(arm, "mpmath")(*numbers)
+        solution = mpmath.lu_solve(mass[: q.size, : q.size], forcing[: q.size, 0])
         return np.array(solution, dtype=float).reshape(-1, arm.n).T
 
 
@@ -371,18 +396,25 @@ def poses(arm: WholeArm, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
     phi, L = q[:, 0], arm.L0 + (q[:, 1] if arm.extends else np.zeros(arm.n))
     k = phi / L
     x, y = np.sin(k * L) / k, (1 - np.cos(k * L)) / k
-    theta = np.cumsum(phi)
+    base_x, base_y, base_theta = base_pose(arm)
+    theta = base_theta + np.cumsum(phi)
     near = theta - phi
     return (
-        np.cumsum(np.cos(near) * x - np.sin(near) * y),
-        np.cumsum(np.sin(near) * x + np.cos(near) * y),
+        base_x + np.cumsum(np.cos(near) * x - np.sin(near) * y),
+        base_y + np.cumsum(np.sin(near) * x + np.cos(near) * y),
         theta,
     )
 
 
+def base_pose(arm: WholeArm) -> np.ndarray:
+    """x, y, theta of the base."""
+    return np.zeros(3) if arm.base is None else arm.base[0]
+
+
 def cable_lengths(arm: WholeArm, q: np.ndarray) -> np.ndarray:
     """Hole-to-hole lengths from the holes' positions, shape (cables, disks). Rone 2012, Eq. 22-23."""
-    x, y, theta = (np.concatenate([[0], values])[:: arm.step] for values in poses(arm, q))
+    ends = zip(base_pose(arm), poses(arm, q), strict=True)
+    x, y, theta = (np.concatenate([[start], values])[:: arm.step] for start, values in ends)
     lengths = np.empty((len(arm.r_h), arm.n // arm.step), dtype=q.dtype)
     for c, r_h in enumerate(arm.r_h):
         across, up = np.diff(x - r_h * np.sin(theta)), np.diff(y + r_h * np.cos(theta))
@@ -397,7 +429,7 @@ def elastic_energy(arm: WholeArm, q: np.ndarray) -> Any:
 
 
 def gravity_energy(arm: WholeArm, q: np.ndarray) -> Any:
-    """Of the masses, payloads included, zero at the base, J."""
+    """Of the masses, payloads included, zero at the origin, J."""
     x, y, theta = poses(arm, q)
     m, _, along, across = arm.payload.T
     at = np.array(arm.carriers, dtype=int) - 1

@@ -41,6 +41,8 @@ def explain(
         f"{scene.arm.segments} segments, {per_segment * scene.arm.segments} coordinates: "
         f"{' and '.join(scene.coordinates)} of each segment.\n"
     )
+    if scene.arm.base is not None:
+        _print_base(scene.arm)
     typer.echo("Effects in play")
     width = max((len(effect.name) for effect in scene.effects), default=0)
     for effect in scene.effects:
@@ -58,6 +60,12 @@ def explain(
         show_what_to_leave_out(scenario)
     else:
         typer.echo("\nWhat this scenario could do without: measured if you add --measure.")
+
+
+def _print_base(arm: Any) -> None:
+    x, y, angle = arm.base_pose
+    where = f"at x = {x:g} m, y = {y:g} m, at an angle of {angle:g} rad"
+    typer.echo(f"The base {'moves, and starts' if arm.base_moves else 'is'} {where}.\n")
 
 
 def _modes(scenario: Any) -> Any:
