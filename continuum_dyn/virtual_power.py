@@ -12,11 +12,11 @@ from typing import Any
 import sympy as sp
 
 from statics.scene import Scene
-from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols
 from statics.virtual_work import (
     Forces,
     Groups,
     SceneForces,
+    Symbols,
     by_account,
     derive,
     dot,
@@ -47,7 +47,7 @@ def derive_dynamics(scene: Scene) -> SceneForces:
     return derive(scene, _in_motion)
 
 
-def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+def _in_motion(groups: Groups, at: Symbols) -> Forces:
     force = _total(groups, at)
     loads = _total([group for group in groups if group[0].account != "kinetic_energy"], at)
     still = loads.subs(dict.fromkeys(at.rates, 0))
@@ -66,7 +66,7 @@ def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -
     return Forces(force, mass, damping, -still.jacobian(at.coordinates), energies, powers)
 
 
-def _total(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> sp.Matrix:
+def _total(groups: Groups, at: Symbols) -> sp.Matrix:
     pairs = [pair for _, group in groups for pair in group]
     return generalized_force(
         pairs, lambda r, i: partial_velocity(r, at.coordinates, at.rates, i), at.coordinates

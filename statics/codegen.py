@@ -2,8 +2,8 @@
 
 Structure is what changes the equations: the effects, the coordinates of a segment, the numbers of cables and
 of loads that change, the most payloads on one disk, whether a span has several segments, whether the holes of
-a cable differ. Numbers are not, so a changed number never recompiles; a changed source file always does. A
-warm start finds its kernel by a hash and imports neither sympy nor the derivation.
+a cable differ, whether the core has mass. Numbers are not, so a changed number never recompiles; a changed
+source file always does. A warm start finds its kernel by a hash and imports neither sympy nor the derivation.
 """
 
 import hashlib
@@ -31,7 +31,17 @@ from statics.scene import Scene
 _HERE = Path(__file__).parent
 DERIVATION = tuple(
     _HERE / f"{stem}.py"
-    for stem in ("sigma", "segment", "trace", "virtual_work", "recursion", "compose", "codegen", "chain")
+    for stem in (
+        "sigma",
+        "segment",
+        "trace",
+        "virtual_work",
+        "reach",
+        "recursion",
+        "compose",
+        "codegen",
+        "chain",
+    )
 )
 """The sources that every kernel is made from."""
 
@@ -74,7 +84,8 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
     effects = [effect.name for effect in scene.effects]
-    forms = (scene.cables, scene.driven_loads, scene.payloads, scene.spans, scene.holes_differ)
+    loads = (scene.cables, scene.driven_loads, scene.payloads)
+    forms = (*loads, scene.spans, scene.holes_differ, scene.core_has_mass)
     structure = (recipe.kind, scene.coordinates, forms, effects)
     sources = [_digest(file, file.stat().st_mtime_ns) for file in recipe.sources]
     sources += [_effect_digest(effect) for effect in scene.effects]

@@ -56,13 +56,13 @@ def sampled(seed: int) -> Scene:
     """Each effect and each trait of the arm with even odds."""
     odds = np.random.default_rng(seed).random(20) < 0.5
     effects = [effect for effect, there in zip(OPTIONAL, odds, strict=False) if there]
-    subsegments, tapered, laden = (2 if odds[11] else 1), odds[12], odds[13]
+    subsegments, tapered, laden, heavy = (2 if odds[11] else 1), odds[12], odds[13], odds[14]
     upper = Cable("upper", (0.009, 0.008, 0.006) if tapered else 0.008)
     arm = Arm.preset(
         "rone2012",
         disks=2,
         subsegments=subsegments,
-        core_density=7800.0 if subsegments > 1 else None,
+        core_density=7800.0 if heavy or subsegments > 1 else None,
         reference_curvature=3.0,
         cables=(upper, Cable("lower", -0.006, anchor=1)),
         payloads=(Payload(2, 0.01, 1e-6, (0.005, -0.003)),) if laden else (),
