@@ -83,8 +83,7 @@ class Dynamics:
         arm = self.scene.arm
         columns = arm.segment_columns()
         stiffness = float(np.mean(columns.get("bending_stiffness", 0.0))) / arm.total_length
-        mass = float(arm.node_columns()["node_mass"].sum()) + sum(p.mass for p in arm.payloads)
-        inertia = mass * arm.total_length**2
+        inertia = arm.total_mass * arm.total_length**2
         return float(np.sqrt(stiffness / inertia)) if stiffness else 1.0
 
     def scales(self) -> np.ndarray:

@@ -8,6 +8,9 @@ reach:
     p_a     = S_a . (P, N)
     dT/dq_a = P . (omega0 z x r_a + r_ab u_b) - phi_a P . (z x v)
 
+A point of the core moves with its own segment as a far disk does, but nothing beyond turns about it: it adds
+S_a . P, and P . (omega0 z x r_a + r_ab u_b) with its own reach.
+
 The second is p_a's with the partials' own rates: dv/dq_a = d(dv/du_a)/dt (Lagrange), and what lies beyond
 turns about the far disk. A payload beside its disk's centre makes the disk's T depend on its angle, and adds
 no term: turned together with its velocity a body keeps its T, so dT/dtheta + P . (z x v) = 0 for each disk.
@@ -20,18 +23,11 @@ import sympy as sp
 
 from continuum_dyn.motion_steps import disk_in_motion, integrated
 from statics.cable_tension import along_cables, drive_power
-from statics.recursion import (
-    Reach,
-    Step,
-    Weights,
-    name_forces,
-    placed,
-    reach_of,
-    turned,
-)
-from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols, symbol
+from statics.reach import Reach, core_reaches, reach_of, turned
+from statics.recursion import Step, Weights, name_forces, placed
+from statics.segment import symbol
 from statics.trace import Trace
-from statics.virtual_work import Forces, SceneForces
+from statics.virtual_work import Forces, SceneForces, Symbols
 
 CONSERVATIVE = Weights(1, 0, symbol("stiffness_weight"))
 """Mass, and stiffness times the weight that the sweep is handed."""
@@ -44,17 +40,18 @@ def conservative(forces: SceneForces) -> SceneForces:
         on_segment=_conservative(forces.on_segment, forces.segment),
         on_disk=_conservative(forces.on_disk, forces.disk),
         on_span=forces.on_span and forces.span and _conservative(forces.on_span, forces.span),
+        on_core=tuple(map(_conservative, forces.on_core, forces.core)),
     )
 
 
-def _conservative(part: Forces, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+def _conservative(part: Forces, at: Symbols) -> Forces:
     force = part.force.subs(dict.fromkeys([*at.rates, *at.accelerations], 0))
     none = sp.zeros(*part.damping.shape)
     return replace(part, force=force, damping=none, stiffness=-force.jacobian(at.coordinates))
 
 
-def _momentum(part: Forces, at: SegmentSymbols | DiskSymbols) -> sp.Matrix:
-    """Momentum dT/du of one segment or disk by itself."""
+def _momentum(part: Forces, at: Symbols) -> sp.Matrix:
+    """Momentum dT/du of one segment, disk or point of the core by itself."""
     return sp.Matrix([part.energies["kinetic_energy"].diff(rate) for rate in at.rates])
 
 
@@ -66,7 +63,13 @@ def _name_partial_rates(trace: Trace, forces: SceneForces, reach: Reach) -> None
         for second, u in zip(row, forces.segment.rates, strict=True):
             rate += second * u
         for axis in range(2):
-            trace.name(f"partial_rate_{axis}{a}", rate[axis])
+            trace.name(f"{reach.prefix}partial_rate_{axis}{a}", rate[axis])
+
+
+def _partial_rate(reach: Reach) -> sp.Matrix:
+    """The same by name, shape (2, dofs)."""
+    name = f"{reach.prefix}partial_rate"
+    return sp.Matrix(*reach.by_q.shape, lambda axis, a: symbol(f"{name}_{axis}{a}"))
 
 
 def velocity_step(forces: SceneForces) -> Step:
@@ -78,6 +81,9 @@ def velocity_step(forces: SceneForces) -> Step:
     _name_partial_rates(trace, forces, reach)
     for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
         trace.name(f"disk_momentum_{row}", placed(value, at))
+    for (point, of_core), part in zip(core_reaches(forces), forces.on_core, strict=True):
+        _name_partial_rates(trace, forces, of_core)
+        trace.let(f"{of_core.prefix}momentum", placed(_momentum(part, point), at))
     trace.let("segment_momentum", _momentum(forces.on_segment, forces.segment))
     power = integrated(forces, "input_power", at)
     return Step(
@@ -99,7 +105,6 @@ def momentum_step(forces: SceneForces) -> Step:
     """Inwards: the momentum p = dT/du of a segment's coordinates, and dT/dq."""
     trace = Trace()
     reach = reach_of(forces)
-    dofs = range(len(forces.segment.coordinates))
     carried = sp.Matrix([symbol(name) for name in ("momentum_x", "momentum_y", "angular_momentum")])
     whole = trace.let("beyond", carried + sp.Matrix([symbol(f"disk_momentum_{row}") for row in range(3)]))
     linear, far = whole[:2, 0], sp.Matrix([symbol("far_velocity_0"), symbol("far_velocity_1")])
@@ -108,8 +113,14 @@ def momentum_step(forces: SceneForces) -> Step:
         for a, value in enumerate(_momentum(forces.on_segment, forces.segment))
     ]
     turning = trace.let("turning", -linear.dot(turned(far)))
-    partial_rate = sp.Matrix(2, len(dofs), lambda axis, a: symbol(f"partial_rate_{axis}{a}"))
+    momentum = reach.partials.T * whole + sp.Matrix(own)
+    slope = _partial_rate(reach).T * linear + reach.turn_by_q.T * turning
     at_near: Any = reach.transition.T * whole
+    for _, of_core in core_reaches(forces):
+        of_point = sp.Matrix([symbol(f"{of_core.prefix}momentum_{axis}") for axis in range(2)])
+        momentum += of_core.by_q.T * of_point
+        slope += _partial_rate(of_core).T * of_point
+        at_near += of_core.transition[:2, :].T * of_point
     return Step(
         "momentum_step",
         "Inwards: momentum of the segment's coordinates, and the slope of the kinetic energy by them.",
@@ -117,7 +128,7 @@ def momentum_step(forces: SceneForces) -> Step:
         trace,
         carried={str(name): (0.0, value) for name, value in zip(carried, at_near, strict=True)},
         stores={
-            "momentum": list(reach.partials.T * whole + sp.Matrix(own)),
-            "slope": list(partial_rate.T * linear + reach.turn_by_q.T * turning),
+            "momentum": list(momentum),
+            "slope": list(slope),
         },
     )

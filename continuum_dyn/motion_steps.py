@@ -13,19 +13,18 @@ import sympy as sp
 
 from statics import cable_steps
 from statics.cable_tension import along_cables, drive_power, stored_in_cables
+from statics.reach import Reach, core_reaches, reach_of, turned
 from statics.recursion import (
-    Reach,
     Step,
     at_base,
+    booked,
+    core_positions,
     far_pose,
     from_start,
     name_forces,
-    placed,
-    reach_of,
     residual_step,
     span_ends,
     turn_frame,
-    turned,
 )
 from statics.segment import symbol
 from statics.trace import Trace
@@ -35,14 +34,23 @@ ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 POWERS = ("input_power", "dissipated_power")
 
 
+def _near_velocity() -> tuple[sp.Matrix, sp.Symbol]:
+    return sp.Matrix([symbol("near_velocity_x"), symbol("near_velocity_y")]), symbol("near_angular_velocity")
+
+
+def _end_velocity(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Matrix:
+    """Velocity of a reach's end, shape (2, 1)."""
+    near, spin = _near_velocity()
+    relative = trace.let(f"{reach.prefix}relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
+    return trace.let(f"{reach.prefix}far_velocity", near + spin * turned(reach.whole) + relative)
+
+
 def _far_velocity(
     trace: Trace, forces: SceneForces, reach: Reach
 ) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
     """Velocity of the far disk: what is carried on, and what the disk's symbols stand for."""
-    near = sp.Matrix([symbol("near_velocity_x"), symbol("near_velocity_y")])
-    spin = symbol("near_angular_velocity")
-    relative = trace.let("relative_velocity", reach.by_q * sp.Matrix(forces.segment.rates))
-    far = trace.let("far_velocity", near + spin * turned(reach.whole) + relative)
+    near, spin = _near_velocity()
+    far = _end_velocity(trace, forces, reach)
     far_spin = trace.let("far_angular_velocity", spin + forces.segment.bend_angle_rate)
     carried = _from_base(forces, [*near, spin], [*far, far_spin])
     return carried, dict(zip(forces.disk.rates, [*far, far_spin], strict=True))
@@ -56,19 +64,22 @@ def _from_base(forces: SceneForces, near: list[sp.Symbol], far: list[Any]) -> di
     }
 
 
-def _far_acceleration(
-    trace: Trace, forces: SceneForces, reach: Reach
-) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+def _near_acceleration() -> tuple[sp.Matrix, sp.Symbol]:
     near = sp.Matrix([symbol("near_acceleration_x"), symbol("near_acceleration_y")])
-    spin, spin_rate = symbol("near_angular_velocity"), symbol("near_angular_acceleration")
+    return near, symbol("near_angular_acceleration")
+
+
+def _end_acceleration(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Matrix:
+    """Acceleration of a reach's end, shape (2, 1)."""
+    (near, spin_rate), (_, spin) = _near_acceleration(), _near_velocity()
     u, w = sp.Matrix(forces.segment.rates), sp.Matrix(forces.segment.accelerations)
-    relative = sp.Matrix([symbol("relative_velocity_0"), symbol("relative_velocity_1")])
+    relative = sp.Matrix([symbol(f"{reach.prefix}relative_velocity_{axis}") for axis in range(2)])
     curving = sp.zeros(2, 1)
     for a, row in enumerate(reach.by_qq):
         for b, second in enumerate(row):
             curving += second * u[a] * u[b]
-    far = trace.let(
-        "far_acceleration",
+    return trace.let(
+        f"{reach.prefix}far_acceleration",
         near
         + spin_rate * turned(reach.whole)
         - spin**2 * reach.whole
@@ -76,7 +87,14 @@ def _far_acceleration(
         + reach.by_q * w
         + curving,
     )
-    far_spin_rate = trace.let("far_angular_acceleration", spin_rate + w[0])
+
+
+def _far_acceleration(
+    trace: Trace, forces: SceneForces, reach: Reach
+) -> tuple[dict[str, Any], dict[sp.Symbol, Any]]:
+    near, spin_rate = _near_acceleration()
+    far = _end_acceleration(trace, forces, reach)
+    far_spin_rate = trace.let("far_angular_acceleration", spin_rate + forces.segment.accelerations[0])
     carried = _from_base(forces, [*near, spin_rate], [*far, far_spin_rate])
     return carried, dict(zip(forces.disk.accelerations, [*far, far_spin_rate], strict=True))
 
@@ -92,7 +110,7 @@ def _span_velocity(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], d
 
 
 def disk_in_motion(trace: Trace, forces: SceneForces) -> tuple[Reach, dict[str, Any], dict[Any, Any]]:
-    """Poses and velocities of the far disk and of the span's start.
+    """Poses and velocities of the far disk, of the core's points and of the span's start.
 
     Returns the segment's reach, what is carried on, and what the symbols of the forces stand for.
     """
@@ -102,12 +120,12 @@ def disk_in_motion(trace: Trace, forces: SceneForces) -> tuple[Reach, dict[str, 
     motion, moving = _far_velocity(trace, forces, reach)
     ends, at = span_ends(trace, forces, frame, at_disk)
     ends_motion, at_start = _span_velocity(trace, forces)
-    return reach, frame | pose | motion | ends | ends_motion, at | moving | at_start
-
-
-def booked(forces: SceneForces, kind: str, account: str, at: dict[Any, Any]) -> Any:
-    """One line of the ledger: what segment, disk and span put into it."""
-    return sum(placed(getattr(part, kind).get(account, 0), at) for part in forces.places.values())
+    reaches = core_reaches(forces, trace)
+    at_core = core_positions(trace, reaches)
+    for point, of_core in reaches:
+        velocity = _end_velocity(trace, forces, of_core)
+        at_core |= dict(zip(point.rates, velocity, strict=True))
+    return reach, frame | pose | motion | ends | ends_motion, at | moving | at_start | at_core
 
 
 def integrated(forces: SceneForces, account: str, at: dict[Any, Any]) -> Any:
@@ -122,6 +140,8 @@ def motion_step(forces: SceneForces) -> Step:
     reach, carried, at = disk_in_motion(trace, forces)
     push, pushed = _far_acceleration(trace, forces, reach)
     at |= pushed
+    for point, of_core in core_reaches(forces):
+        at |= dict(zip(point.accelerations, _end_acceleration(trace, forces, of_core), strict=True))
     cables = along_cables(trace, forces.coupled, at, moves=True)
     name_forces(trace, forces, at)
     powers = {name: trace.let(f"added_{name}", integrated(forces, name, at)) for name in POWERS}

@@ -1,7 +1,7 @@
 """What a paper prints, computed again: by its printed equations, by the program, and by the exact rod."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -32,6 +32,8 @@ FIGURE_4_TENSIONS = (0.05, 0.1, 0.5, 1.0, 2.0)
 RAMP_TENSIONS = np.linspace(0.0, 2.0, 21)
 CORE_RADIUS = 4e-4
 """m; Table 1's A and J_xx are those of this radius, rounded."""
+CORE_DENSITY = 7850.0
+"""kg/m^3; that of steel, whose modulus is Table 1's E."""
 
 
 @dataclass(frozen=True)
@@ -60,16 +62,26 @@ class Shapes:
 
 
 @dataclass(frozen=True)
+class CoreSpread:
+    """The unactuated arm of the same mass with the core's part of it along the core, and not in the disks."""
+
+    program: Equilibrium
+    rod: RodShape
+
+
+@dataclass(frozen=True)
 class Rone2012:
     """Everything numeric in Rone and Ben-Tzvi 2012, computed again.
 
     ``unactuated`` is Fig. 3 and Table 2, ``figure_4`` has its tensions, ``ramp`` many from 0 to 2 N;
-    ``unrounded`` is the unactuated arm with A and J of a core of 0.4 mm radius instead of Table 1's.
+    ``unrounded`` is the unactuated arm with A and J of a core of 0.4 mm radius instead of Table 1's,
+    ``core_spread`` the one whose core has its own mass.
     ``level_tension`` (N) is where the tip is as high as the base, by each law.
     """
 
     unactuated: Shapes
     unrounded: Equilibrium
+    core_spread: CoreSpread
     figure_4: tuple[Shapes, ...]
     ramp: tuple[Shapes, ...]
     level_tension: dict[str, float]
@@ -108,15 +120,25 @@ class PaperArm:
         return {law: brentq(height, 0.05, 0.5, xtol=1e-7) for law, height in tip_y.items()}
 
 
+def with_core_spread(scene: Scene) -> Scene:
+    """The scene with its core's mass along the core, taken from the disks' effective one."""
+    arm = scene.arm
+    heavy = replace(arm, core_density=CORE_DENSITY)
+    of_disks = (arm.total_mass - heavy.core_masses.sum()) / arm.disks
+    return Scene(replace(heavy, disk_mass=float(of_disks)), scene.effects)
+
+
 def reproduce(paper: str) -> Rone2012:
     """Everything numeric in that paper, computed again. Raises ``InputError`` for one that is not known."""
     if paper not in PAPERS:
         raise InputError(f"unknown paper '{paper}'.{did_you_mean(paper, PAPERS)}")
     arm = PaperArm()
+    spread = with_core_spread(arm.scene)
     unrounded = Arm.preset("rone2012", cables=arm.scene.arm.cables, **Arm.round_core(CORE_RADIUS))
     return Rone2012(
         unactuated=arm.shapes(0.0),
         unrounded=StaticSolver(Scene(unrounded, arm.scene.effects)).solve(np.zeros(1)),
+        core_spread=CoreSpread(StaticSolver(spread).solve(np.zeros(1)), exact_rod(spread, 0.0)),
         figure_4=tuple(arm.shapes(tension) for tension in FIGURE_4_TENSIONS),
         ramp=tuple(arm.shapes(tension) for tension in RAMP_TENSIONS),
         level_tension=arm.level_tensions(),

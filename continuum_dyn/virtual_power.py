@@ -13,11 +13,12 @@ import sympy as sp
 
 from continuum_dyn.transport import with_transport
 from statics.scene import Scene
-from statics.segment import DiskSymbols, SegmentSymbols, SpanSymbols
+from statics.segment import SegmentSymbols, SpanSymbols
 from statics.virtual_work import (
     Forces,
     Groups,
     SceneForces,
+    Symbols,
     by_account,
     derive,
     dot,
@@ -48,7 +49,7 @@ def derive_dynamics(scene: Scene) -> SceneForces:
     return derive(scene, _on_moving_base if scene.arm.base_moves else _in_motion)
 
 
-def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+def _in_motion(groups: Groups, at: Symbols) -> Forces:
     force = _total(groups, at)
     loads = _loads(groups, at)
     still = loads.subs(dict.fromkeys(at.rates, 0))
@@ -67,19 +68,19 @@ def _in_motion(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -
     return Forces(force, mass, damping, -still.jacobian(at.coordinates), energies, powers)
 
 
-def _on_moving_base(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+def _on_moving_base(groups: Groups, at: Symbols) -> Forces:
     part = _in_motion(groups, at)
     if isinstance(at, SegmentSymbols | SpanSymbols):
         return part
     return with_transport(part, _loads(groups, at), at)
 
 
-def _loads(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> sp.Matrix:
+def _loads(groups: Groups, at: Symbols) -> sp.Matrix:
     """Generalized forces of all but inertia."""
     return _total([group for group in groups if group[0].account != "kinetic_energy"], at)
 
 
-def _total(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> sp.Matrix:
+def _total(groups: Groups, at: Symbols) -> sp.Matrix:
     pairs = [pair for _, group in groups for pair in group]
     return generalized_force(
         pairs, lambda r, i: partial_velocity(r, at.coordinates, at.rates, i), at.coordinates

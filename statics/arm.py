@@ -25,6 +25,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from statics.checked import STRICT, NonNegative, Positive, Vector
+from statics.core_mass import AT_END, AT_POINT
 from statics.errors import InputError, did_you_mean
 
 MAX_SEGMENTS = 10_000
@@ -144,11 +145,10 @@ RONE2012_HOLE_OFFSET = 0.008
 class Arm:
     """A planar arm. A number may stay None where no effect of the scene needs it; ``each`` has what differs.
 
-    ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` puts
-    the core's own mass on the nodes, half of each segment's on either end; ``disk_mass`` is then a disk's
-    alone. Without a ``base`` the core starts at the origin, along x. Raises ``InputError`` for cables and
-    payloads that do not fit, ``pydantic.ValidationError`` (a ``ValueError``) for numbers of the wrong kind or
-    sign.
+    ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` gives the
+    core a mass of its own, spread along each segment; ``disk_mass`` is then a disk's alone. Without a
+    ``base`` the core starts at the origin, along x. Raises ``InputError`` for cables and payloads that do not
+    fit, ``pydantic.ValidationError`` (a ``ValueError``) for numbers of the wrong kind or sign.
     """
 
     disks: DiskNumber
@@ -286,6 +286,8 @@ class Arm:
         for stiffness, of_section in (("bending_stiffness", "second_moment"), ("axial_stiffness", "area")):
             if self.knows("youngs_modulus") and self.knows(of_section):
                 columns[stiffness] = self._along("youngs_modulus") * self._along(of_section)
+        if self.core_density is not None:
+            columns["core_point_mass"] = AT_POINT * self.core_masses
         disk, is_disk = np.divmod(np.arange(1, self.segments + 1), self.subsegments)
         columns["span_start"] = np.roll(is_disk == 0, 1).astype(float)
         for number, cable in enumerate(self.cables, start=1):
@@ -314,7 +316,7 @@ class Arm:
         """What the arm knows of each node, by glossary name, shape (segments,)."""
         columns = {}
         if self.knows("disk_mass"):
-            columns["node_mass"] = self.at_disks(self.per_disk("disk_mass")) + self._core_on_nodes()
+            columns["node_mass"] = self.at_disks(self.per_disk("disk_mass")) + self._core_ends()
         if self.knows("disk_inertia"):
             columns["node_inertia"] = self.at_disks(self.per_disk("disk_inertia"))
         return columns | self._payload_columns()
@@ -340,6 +342,19 @@ class Arm:
         }
 
     @property
+    def core_masses(self) -> np.ndarray:
+        """The core's own mass in each segment, shape (segments,), kg; none without ``core_density``."""
+        if self.core_density is None:
+            return np.zeros(self.segments)
+        return self.core_density * self._along("area") * self.rest_lengths
+
+    @property
+    def total_mass(self) -> float:
+        """Mass of disks, core and payloads, kg; the arm must know its ``disk_mass``."""
+        payloads = sum(payload.mass for payload in self.payloads)
+        return float(self.per_disk("disk_mass").sum() + self.core_masses.sum()) + payloads
+
+    @property
     def massless_nodes(self) -> bool:
         """Whether some nodes carry no mass: those between disks of a core without density."""
         return self.subsegments > 1 and self.core_density is None
@@ -357,8 +372,6 @@ class Arm:
         """
         return (of_segments + np.append(of_segments[1:], 0.0)) / 2
 
-    def _core_on_nodes(self) -> np.ndarray:
-        """The core's own mass, shape (segments,), kg."""
-        if self.core_density is None:
-            return np.zeros(self.segments)
-        return self.on_nodes(self.core_density * self._along("area") * self.rest_lengths)
+    def _core_ends(self) -> np.ndarray:
+        """The part of the core's mass whose place of quadrature is a node, shape (segments,), kg."""
+        return AT_END * (self.core_masses + np.append(self.core_masses[1:], 0.0))

@@ -2,9 +2,9 @@
 
 Structure is what changes the equations: the effects, the coordinates of a segment, the kinds of the cables,
 the loads that change or that turn with their disk, whether there is a base and whether it moves, the most
-payloads on one disk, whether a span has several segments, whether the holes of a cable differ. Numbers are
-not, so a changed number never recompiles; a changed source file always does. A warm start finds its kernel
-by a hash and imports neither sympy nor the derivation.
+payloads on one disk, whether a span has several segments, whether the holes of a cable differ, whether the
+core has mass. Numbers are not, so a changed number never recompiles; a changed source file always does. A
+warm start finds its kernel by a hash and imports neither sympy nor the derivation.
 """
 
 import hashlib
@@ -38,6 +38,7 @@ DERIVATION = tuple(
         "trace",
         "virtual_work",
         "cable_tension",
+        "reach",
         "recursion",
         "cable_steps",
         "compose",
@@ -86,7 +87,8 @@ def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
     """Hash of the scene's structure, of the sources behind it, and of the versions that shape the code."""
     effects = [effect.name for effect in scene.effects]
-    forms = (scene.cable_kinds, scene.inputs, scene.payloads, scene.spans, scene.holes_differ)
+    forms = (scene.cable_kinds, scene.inputs, scene.payloads)
+    forms += (scene.spans, scene.holes_differ, scene.core_has_mass)
     loads = (scene.followers_among_driven, scene.has_followers)
     structure = (recipe.kind, scene.coordinates, forms, loads, effects)
     sources = [_digest(file, file.stat().st_mtime_ns) for file in recipe.sources]

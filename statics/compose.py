@@ -227,20 +227,26 @@ def _by_place(text: str) -> tuple[str, int]:
 
 
 def _assignments(lines: list[Any], ladders: set[int]) -> list[str]:
-    ladder = set().union(*(value.atoms(Sigma) for _, value in lines))
-    text = []
-    if ladder:
-        order = max(1, *(int(call.args[0]) for call in ladder))
+    text, known = [], {}
+    for number, (argument, calls) in enumerate(_calls_by_argument(lines)):
+        order = max(1, *(int(call.args[0]) for call in calls))
         ladders.add(order)
-        names = ["sigma_minus_1", *(f"sigma_{n}" for n in range(order + 1))]
-        argument = next(iter(ladder)).args[1]
-        text.append(f"{', '.join(names)} = sigma_ladder_{order}({_code(argument)})")
-    known = {
-        call: symbol("sigma_minus_1" if call.args[0] == -1 else f"sigma_{call.args[0]}") for call in ladder
-    }
+        suffix = f"_at_{number}" if number else ""
+        names = {n: f"sigma_{'minus_1' if n == -1 else n}{suffix}" for n in range(-1, order + 1)}
+        text.append(f"{', '.join(names.values())} = sigma_ladder_{order}({_code(argument)})")
+        known |= {call: symbol(names[int(call.args[0])]) for call in calls}
     for symbols, value in _without_repetition([(s, value.xreplace(known)) for s, value in lines]):
         text.append(f"{', '.join(map(str, symbols))} = {_code(value)}")
     return text
+
+
+def _calls_by_argument(lines: list[Any]) -> list[tuple[Any, set[Any]]]:
+    """The sigma_n in these lines: the segment's own half angle first, then parts of it."""
+    calls: dict[Any, set[Any]] = {}
+    for _, value in lines:
+        for call in value.atoms(Sigma):
+            calls.setdefault(call.args[1], set()).add(call)
+    return sorted(calls.items(), key=lambda item: str(item[0]))
 
 
 def _without_repetition(lines: list[Any]) -> list[Any]:

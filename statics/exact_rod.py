@@ -3,21 +3,21 @@
 Each span is an elastica (Love 1944, sec. 262) between rigid, point-like disks, with s from 0 to L0
 along its undeformed length and the internal force F and moment M of all that lies beyond::
 
-    dtheta/ds = k0 + M / EJ      dr/ds = (1 + F.t / EA) t      M(s) = M(0) - (r(s) - r(0)) x F
+    dtheta/ds = k0 + M / EJ      dr/ds = (1 + F.t / EA) t      dM/ds = -dr/ds x F      dF/ds = -w
 
-with t = (cos theta, sin theta); F is constant over a span, and F.t / EA is left out in a scene without
-extension. There is no shear. Curvature is measured per *undeformed* length, so the energy of a span is
-the integral of EJ (theta' - k0)^2 / 2 + EA eps^2 / 2 over L0: with constant theta' = phi / L0 and
-eps = e / L0 it is that of the program's laws, moment (EJ / L0)(phi - k0 L0) and force (EA / L0) e. The
-constant-curvature arm is this rod with fewer shapes to choose from. Per deformed length, the bending
-law would differ from the program's by the strain.
+with t = (cos theta, sin theta). The core's own weight w, per undeformed length, acts if it has any: else F
+is constant over a span. F.t / EA is left out in a scene without extension. There is no shear. Curvature is
+measured per *undeformed* length, so the energy of a span is the integral of EJ (theta' - k0)^2 / 2
++ EA eps^2 / 2 over L0: with constant theta' = phi / L0 and eps = e / L0 it is that of the program's laws,
+moment (EJ / L0)(phi - k0 L0) and force (EA / L0) e. The constant-curvature arm is this rod with fewer shapes
+to choose from. Per deformed length, the bending law would differ from the program's by the strain.
 
 Solved by multiple shooting on the internal loads, each piece of the core in the frame of the node that
-it starts from; what has to vanish is the unbalance of every node. Nodes are the disks and, where the
-loads are large, points between them: a piece that carries less than pi^2 EJ / length^2 is stable while
-its ends are held (the second variation of its energy is the integral of EJ eta'^2 + F.t eta^2), so the
-arm is stable where the compliance of its nodes has no negative eigenvalue. Nothing here knows the
-segment, the chain or the kernels.
+it starts from, in which its weight has a direction that follows from the pieces before. What has to vanish
+is the unbalance of every node. Nodes are the disks and, where the loads are large, points between them: a
+piece that carries less than pi^2 EJ / length^2 is stable while its ends are held (the second variation of
+its energy is the integral of EJ eta'^2 + F.t eta^2), so the arm is stable where the compliance of its nodes
+has no negative eigenvalue. Nothing here knows the segment, the chain or the kernels.
 """
 
 from dataclasses import dataclass, replace
@@ -41,6 +41,7 @@ MET = 0.01  # of the disk spacing: holes that near pull in no certain direction
 NEGATIVE = -1e-9  # of the largest eigenvalue: an inextensible core has zeros, give or take rounding
 MAX_ITERATIONS = 12
 STEP_TOLERANCE = 1e-10  # Newton is quadratic here: what the last step leaves is rounding
+ROUNDING = 1e-15  # of an angle, rad
 NUDGE = 1e-30  # of the complex step: f(x + i NUDGE) = f(x) + i NUDGE f'(x), without cancellation
 
 
@@ -83,12 +84,13 @@ class _Rod:
     rest_bend: float  # k0 length, rad
     softness: float  # the unit of force over EA; 0 if the core cannot extend
     dead_load: np.ndarray  # force and moment on each disk, shape (disks, 3)
+    weight: np.ndarray  # of a piece, in the frame of the base, shape (2,)
     cables: tuple[_Cable, ...]
 
     def under(self, part: float) -> "_Rod":
         """The same rod under that part of its loads."""
         cables = tuple(cable._replace(tension=part * cable.tension) for cable in self.cables)
-        return replace(self, dead_load=part * self.dead_load, cables=cables)
+        return replace(self, dead_load=part * self.dead_load, weight=part * self.weight, cables=cables)
 
 
 def exact_rod(scene: Scene, tension: object = None) -> RodShape:
@@ -105,7 +107,7 @@ def exact_rod(scene: Scene, tension: object = None) -> RodShape:
     _check(scene.at_rest)
     rod = _rod(scene, values)
     loads = _follow_loads(rod)
-    ends = _piece_ends(rod, loads)
+    _, ends = _hung_ends(rod, loads)
     pose = _node_poses(ends)[rod.parts :: rod.parts]
     base_x, base_y, base_theta = scene.arm.base_pose
     x, y = _turned(pose[:, :2] * rod.length, np.array([0.0, 0.0, base_theta])).T
@@ -130,8 +132,6 @@ def _check(scene: Scene) -> None:
         raise InputError("the exact rod does not know loads that change in time.")
     if scene.has_followers:
         raise InputError("the exact rod does not know loads that turn with their disk.")
-    if scene.arm.core_density is not None:
-        raise InputError("the exact rod has no mass of its own: it does not know core_density.")
     if scene.arm.payloads:
         raise InputError("the exact rod does not know payloads.")
     if not scene.has(Bending.name):
@@ -140,10 +140,10 @@ def _check(scene: Scene) -> None:
 
 def _rod(scene: Scene, tension: np.ndarray) -> _Rod:
     """The scene's numbers, with spans cut so that no piece can carry more than ``MAX_FORCE``."""
-    arm, dead_load = scene.arm, _dead_load(scene)
+    arm, dead_load, weight = scene.arm, _dead_load(scene), _core_weight(scene)
     bending_stiffness = _given(arm.youngs_modulus) * _given(arm.second_moment)
     axial_stiffness = _given(arm.youngs_modulus) * _given(arm.area) if scene.has(Extension.name) else np.inf
-    largest_force = np.hypot(dead_load[:, 0], dead_load[:, 1]).sum() + tension.sum()
+    largest_force = np.hypot(*dead_load[:, :2].T).sum() + np.hypot(*weight) + tension.sum()
     parts = max(1, ceil(arm.disk_spacing * sqrt(largest_force / bending_stiffness / MAX_FORCE)))
     length = arm.disk_spacing / parts
     force = bending_stiffness / length**2
@@ -158,6 +158,7 @@ def _rod(scene: Scene, tension: np.ndarray) -> _Rod:
         rest_bend=arm.reference_curvature * length,
         softness=force / axial_stiffness,
         dead_load=dead_load / (force, force, force * length),
+        weight=weight / (arm.disks * parts) / force,
         cables=cables,
     )
 
@@ -179,6 +180,12 @@ def _dead_load(scene: Scene) -> np.ndarray:
                 total[load.disk - 1] += (*load.force, load.moment)
     total[:, :2] = _turned(total[:, :2], np.array([0.0, 0.0, -scene.arm.base_pose[2]]))
     return total
+
+
+def _core_weight(scene: Scene) -> np.ndarray:
+    """Weight of the core by itself, shape (2,), N."""
+    gravity = [effect.acceleration for effect in scene.effects if isinstance(effect, Gravity)]
+    return scene.arm.core_masses.sum() * np.sum([(0.0, 0.0), *gravity], axis=0)
 
 
 def _follow_loads(rod: _Rod) -> np.ndarray:
@@ -232,14 +239,15 @@ def _solved(matrix: np.ndarray, right_side: np.ndarray) -> np.ndarray:
 
 def _check_geometry(rod: _Rod, before: np.ndarray, loads: np.ndarray) -> None:
     """Refuse a shape that is far from the one before, or that is no arm any more."""
-    ends = _piece_ends(rod, loads)
+    angles, ends = _hung_ends(rod, loads)
     pose = _node_poses(ends)
-    turn = pose[:, 2] - _node_poses(_piece_ends(rod, before))[:, 2]
+    turn = pose[:, 2] - _node_poses(_hung_ends(rod, before)[1])[:, 2]
     if np.abs(turn).max() > MAX_TURN:
         raise RodError("beyond it the arm snaps to another shape")
     if any((_gaps(cable, pose[:: rod.parts]) <= 0).any() for cable in rod.cables):
         raise RodError("beyond it holes would pass each other")
-    axial = np.concatenate([loads[:, 0], (loads[:, :2] * _tangents(ends)).sum(axis=1)])
+    at_end = loads[:, :2] - _weight_in_frame(rod, angles)
+    axial = np.concatenate([loads[:, 0], (at_end * _tangents(ends)).sum(axis=1)])
     if (1 + rod.softness * axial <= 0).any():
         raise RodError("there the core is crushed to nothing")
 
@@ -255,7 +263,7 @@ def _check_stability(rod: _Rod, loads: np.ndarray) -> None:
 
 def _holes_met(rod: _Rod, loads: np.ndarray) -> str | None:
     """Of which cable two holes have all but met, as the end of a sentence."""
-    pose = _node_poses(_piece_ends(rod, loads))[:: rod.parts]
+    pose = _node_poses(_hung_ends(rod, loads)[1])[:: rod.parts]
     met = [cable.name for cable in rod.cables if _gaps(cable, pose).min() < MET * rod.parts]
     return f"there the holes of cable '{met[0]}' meet" if met else None
 
@@ -264,33 +272,64 @@ def _newton_system(rod: _Rod, loads: np.ndarray) -> tuple[np.ndarray, np.ndarray
     """Unbalance of all nodes, and its and their poses' derivatives by all internal loads.
 
     Shapes (3 nodes,), (3 nodes, 3 nodes) twice. By complex steps; a piece's end depends on that piece's
-    loads alone, so three nudges of each give all that has to be integrated.
+    loads and its start's angle alone, so four nudges of each give all that has to be integrated.
     """
-    nudged = _piece_ends(rod, loads + 1j * NUDGE * np.eye(3)[:, None, :])
+    angles, ends = _hung_ends(rod, loads)
+    nudges = 1j * NUDGE * np.eye(4)[:, None, :]
+    by_own = np.imag(_piece_ends(rod, loads + nudges[..., :3], angles + nudges[..., 3])) / NUDGE
     directions = np.eye(loads.size).reshape(-1, *loads.shape)
-    ends = np.real(nudged[0]) + 1j * np.einsum("dsc,ksd->ksc", np.imag(nudged), directions)
+    change, turn = np.empty((loads.size, *ends.shape)), np.zeros((loads.size, 1))
+    for piece in range(len(loads)):
+        change[:, piece] = directions[:, piece] @ by_own[:3, piece] + turn * by_own[3, piece]
+        turn = turn + change[:, piece, 2:3]
+    ends = ends + 1j * NUDGE * change
     unbalance = _unbalance(rod, loads + 1j * NUDGE * directions, ends).reshape(loads.size, loads.size)
     pose = _node_poses(ends)[:, 1:].reshape(loads.size, loads.size)
     return np.real(unbalance[0]), np.imag(unbalance).T / NUDGE, np.imag(pose).T / NUDGE
 
 
-def _piece_ends(rod: _Rod, loads: np.ndarray) -> np.ndarray:
-    """Pose of each piece's end in the frame of its start, shape (..., nodes, 3), in lengths and rad.
+def _hung_ends(rod: _Rod, loads: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Angles of the pieces' starts, shape (nodes,), and their ends under them, as ``_piece_ends`` has them.
 
-    ``loads`` has the same shape: force and moment at the start, in that frame, real or complex.
+    A piece's angle matters to its own weight only; from pass to pass one more piece has its final one, or
+    all, sooner, to rounding.
+    """
+    angles = np.zeros(len(loads))
+    for _ in range(len(loads)):
+        ends = _piece_ends(rod, loads, angles)
+        before, angles = angles, _node_poses(ends)[:-1, 2]
+        if not rod.weight.any() or np.abs(angles - before).max() < ROUNDING:
+            return angles, ends
+    return angles, _piece_ends(rod, loads, angles)
+
+
+def _piece_ends(rod: _Rod, loads: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Pose of each piece's end in the frame of its start, and moment there, shape (..., nodes, 4).
+
+    ``loads``, shape (..., nodes, 3), are force and moment at the start, in that frame, ``angles``, shape
+    (..., nodes), those of the frames; real or complex, in lengths, rad and the rod's units.
     """
     force_x, force_y, moment = np.moveaxis(loads, -1, 0)
+    weight_x, weight_y = np.moveaxis(_weight_in_frame(rod, angles), -1, 0)
 
-    def slope(_: float, state: np.ndarray) -> np.ndarray:
-        x, y, theta = state.reshape(3, *moment.shape)
+    def slope(s: float, state: np.ndarray) -> np.ndarray:
+        _, _, theta, carried = state.reshape(4, *moment.shape)
         cosine, sine = np.cos(theta), np.sin(theta)
-        stretch = 1 + rod.softness * (force_x * cosine + force_y * sine)
-        bend = rod.rest_bend + moment - (x * force_y - y * force_x)
-        return np.stack([stretch * cosine, stretch * sine, bend]).ravel()
+        along, across = force_x - s * weight_x, force_y - s * weight_y
+        stretch = 1 + rod.softness * (along * cosine + across * sine)
+        unbending = stretch * (across * cosine - along * sine)
+        return np.stack([stretch * cosine, stretch * sine, rod.rest_bend + carried, -unbending]).ravel()
 
-    start = np.zeros(loads.size, dtype=loads.dtype)
+    start = np.stack([0 * moment, 0 * moment, 0 * moment, moment]).ravel()
     solution = solve_ivp(slope, (0.0, 1.0), start, method="DOP853", rtol=1e-13, atol=1e-15)
-    return np.moveaxis(solution.y[:, -1].reshape(3, *moment.shape), 0, -1)
+    return np.moveaxis(solution.y[:, -1].reshape(4, *moment.shape), 0, -1)
+
+
+def _weight_in_frame(rod: _Rod, angles: np.ndarray) -> np.ndarray:
+    """A piece's weight in a frame at that angle, shape (..., nodes, 2)."""
+    cosine, sine = np.cos(angles), np.sin(angles)
+    x, y = rod.weight
+    return np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=-1)
 
 
 def _node_poses(ends: np.ndarray) -> np.ndarray:
@@ -309,8 +348,7 @@ def _unbalance(rod: _Rod, loads: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """
     pose = _node_poses(ends)
     at_start = np.concatenate([_turned(loads[..., :2], pose[..., :-1, :]), loads[..., 2:]], axis=-1)
-    unbalance = at_start.copy()
-    unbalance[..., 2] -= _cross(ends, loads)
+    unbalance = np.concatenate([at_start[..., :2] - rod.weight, ends[..., 3:]], axis=-1)
     unbalance[..., :-1, :] -= at_start[..., 1:, :]
     of_disks = unbalance[..., rod.parts - 1 :: rod.parts, :]
     of_disks -= rod.dead_load

@@ -34,7 +34,7 @@ area                 | A     | m^2    | cross-section area A of the core
 second_moment        | J     | m^4    | second moment of area J of the core about the bending axis
 disk_mass            | -     | kg     | mass of a disk, with the core around it unless core_density is given
 disk_inertia         | -     | kg m^2 | moment of inertia of a disk about an in-plane diameter
-core_density         | -     | kg/m^3 | density of the core; its mass then sits on the nodes
+core_density         | -     | kg/m^3 | density of the core, which then has a mass of its own all along
 subsegments          | -     | 1      | number of segments from disk to disk
 reference_curvature  | k_0   | 1/m    | curvature of the unloaded core
 
@@ -60,7 +60,8 @@ base_acceleration_y  | a_by  | m/s^2  | acceleration of the base along y
 base_angular_acceleration | alpha_b | rad/s^2 | angular acceleration of the base
 
 rest_length          | L_0   | m      | undeformed length L0 of a segment
-node_mass            | m     | kg     | mass at a segment's end: the disk's, if there is one, and the core's
+node_mass            | m     | kg     | mass at a segment's end: the disk's, if any, and the core's share
+core_point_mass      | m_c   | kg     | mass of the core at either of two points along a segment
 node_inertia         | I     | kg m^2 | moment of inertia at a segment's end
 span_start           | -     | 1      | 1 on segments that start at a disk or the base
 bending_stiffness    | EJ    | N m^2  | E J of the core

@@ -11,18 +11,22 @@ The chain's second derivatives act through the reaction f = -sum P beyond the se
 
     f . R d_qq,   f . z x R d_q,   -f . R d
 
+A point of the core that carries mass hangs on the segment's near disk by a reach of its own, as the far disk
+does, and nothing hangs on it: what it adds is a sum over its S and X.
+
 Where several segments make a span from disk to disk, a cable joins the poses of the span's two ends. Then
 what is carried inwards belongs to two poses, that of the segment's near node and that of the disk at the
 span's start, with blocks of 6x6 instead of 3x3; at the span's first segment the two are one, and merge.
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
 from statics.cable_tension import along_cables, drive_potential, stored_in_cables
-from statics.segment import CableSymbols, symbol
+from statics.reach import Reach, core_reaches, reach_of, turned
+from statics.segment import CableSymbols, CorePointSymbols, symbol
 from statics.trace import Trace
 from statics.virtual_work import SceneForces
 
@@ -44,59 +48,6 @@ class Step:
     results: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     carried: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     stores: dict[str, list[Any]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Reach:
-    """A segment's far end seen from its near disk, in base axes, with its derivatives by q."""
-
-    whole: sp.Matrix  # (2, 1)
-    by_q: sp.Matrix  # (2, dofs)
-    by_qq: list[list[sp.Matrix]]  # (dofs, dofs) of (2, 1)
-    turn_by_q: sp.Matrix  # (1, dofs)
-
-    @property
-    def partials(self) -> sp.Matrix:
-        """The partials S, shape (3, dofs): the far disk's pose by the segment's coordinates."""
-        return self.by_q.col_join(self.turn_by_q)
-
-    @property
-    def transition(self) -> sp.Matrix:
-        """The transition X, shape (3, 3): the far disk's pose by the near disk's."""
-        across = turned(self.whole)
-        return sp.Matrix([[1, 0, across[0]], [0, 1, across[1]], [0, 0, 1]])
-
-
-def turned(vector: sp.Matrix) -> sp.Matrix:
-    """The product z x vector, in the plane."""
-    return sp.Matrix([-vector[1], vector[0]])
-
-
-def reach_of(forces: SceneForces, trace: Trace | None = None) -> Reach:
-    """The segment's reach: derived into ``trace``, or by name only where another step has derived it."""
-    segment = forces.segment
-    dofs = range(len(segment.coordinates))
-    rotation = sp.Matrix([[symbol("cosine"), -symbol("sine")], [symbol("sine"), symbol("cosine")]])
-
-    def named(name: str, local: sp.Matrix) -> sp.Matrix:
-        if trace is not None:
-            return trace.let(name, rotation * trace.let(f"local_{name}", local))
-        return sp.Matrix([0 if entry == 0 else symbol(f"{name}_{row}") for row, entry in enumerate(local)])
-
-    d = segment.displacement
-    d_q = [d.diff(q) for q in segment.coordinates]
-    second = {
-        (a, b): named(f"reach_{a}{b}", d_q[a].diff(segment.coordinates[b]))
-        for a in dofs
-        for b in dofs
-        if a <= b
-    }
-    return Reach(
-        named("reach", d),
-        sp.Matrix.hstack(*[named(f"reach_q{a}", d_q[a]) for a in dofs]),
-        [[second[min(a, b), max(a, b)] for b in dofs] for a in dofs],
-        sp.Matrix([[1, *[0 for _ in segment.coordinates[1:]]]]),
-    )
 
 
 def at_base(forces: SceneForces, name: str) -> Any:
@@ -138,6 +89,15 @@ def far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str,
     at_disk: dict[Any, Any] = dict(zip(forces.disk.coordinates, (far_x, far_y, far_theta), strict=True))
     turns = {sp.cos(forces.disk.angle): "next_cosine", sp.sin(forces.disk.angle): "next_sine"}
     return carried, at_disk | {turn: symbol(name) for turn, name in turns.items()}
+
+
+def core_positions(trace: Trace, reaches: list[tuple[CorePointSymbols, Reach]]) -> dict[sp.Symbol, Any]:
+    """What the positions of the core's points stand for."""
+    near, at = sp.Matrix([symbol("near_x"), symbol("near_y")]), {}
+    for point, reach in reaches:
+        position = trace.let(f"{reach.prefix}position", near + reach.whole)
+        at |= dict(zip(point.position, position, strict=True))
+    return at
 
 
 def from_start(near: Any, before: Any) -> Any:
@@ -212,6 +172,7 @@ def pose_step(forces: SceneForces) -> Step:
     carried = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
     ends, at = span_ends(trace, forces, carried, at_disk)
+    at |= core_positions(trace, core_reaches(forces, trace))
     cables = along_cables(trace, forces.coupled, at, moves=False)
     name_forces(trace, forces, at)
     energies = _potential(trace, forces, at) if forces.conservative else {}
@@ -242,6 +203,11 @@ def _potential(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> dict[st
 def placed(expression: Any, at: dict[Any, Any]) -> Any:
     """An expression with the chain's names for the poses and motions that it is written in."""
     return expression.xreplace(at) if hasattr(expression, "xreplace") else sp.sympify(expression)
+
+
+def booked(forces: SceneForces, kind: str, account: str, at: dict[Any, Any]) -> Any:
+    """One line of the ledger: what all places put into it."""
+    return sum(placed(getattr(part, kind).get(account, 0), at) for part in forces.places.values())
 
 
 def name_forces(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> None:
@@ -285,6 +251,14 @@ def _mirrored(value: sp.Matrix) -> sp.Matrix:
     return sp.Matrix(*value.shape, lambda r, c: value[min(r, c), max(r, c)])
 
 
+def _core_forces(forces: SceneForces) -> list[sp.Matrix]:
+    """Forces on the points of the core, by the names that ``name_forces`` gave them."""
+    return [
+        _named(f"{point.name}_force", part.force)
+        for point, part in zip(forces.core, forces.on_core, strict=True)
+    ]
+
+
 def observe_step(forces: SceneForces) -> Step:
     """Outwards, at rest: poses of the nodes, energies of what is elastic and of the weight."""
     trace = Trace()
@@ -292,10 +266,8 @@ def observe_step(forces: SceneForces) -> Step:
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach)
     ends, at = span_ends(trace, forces, frame, at_disk)
-    energies = {
-        name: sum(placed(part.energies.get(name, 0), at) for part in forces.places.values())
-        for name in ("elastic_energy", "gravity_energy")
-    }
+    at |= core_positions(trace, core_reaches(forces, trace))
+    energies = {name: booked(forces, "energies", name, at) for name in ("elastic_energy", "gravity_energy")}
     at_start = {"elastic_energy": stored_in_cables(forces.coupled)}
     return Step(
         "observe_step",
@@ -322,6 +294,9 @@ def residual_step(forces: SceneForces) -> Step:
     reaction = sp.Matrix([trace.name(f"reaction_{row}", value) for row, value in enumerate(wrench)])
     residual = reach.partials.T * reaction - _named("segment_force", forces.on_segment.force)
     inwards = reach.transition.T * reaction
+    for (_, of_core), force in zip(core_reaches(forces), _core_forces(forces), strict=True):
+        residual -= of_core.by_q.T * force
+        inwards -= of_core.transition[:2, :].T * force
     carried = dict(zip(names, inwards, strict=True))
     if forces.on_span is not None:
         at_start = sp.Matrix([symbol(f"span_{name}") for name in names]) - on_span[3:, :]
@@ -399,19 +374,16 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
     V = _let_matrix(trace, symmetric, "V", carried + here)
     VS, VX = trace.let("VS", V * S), trace.let("VX", V * X)
     A = S.T * VS + _weighted(weights, symmetric, forces, "segment")
-    B, C, D = X.T * VS + pulls.T, S.T * VX + pulls, X.T * VX
-    if weights.stiffness != 0:
-        f = sp.Matrix([symbol("reaction_0"), symbol("reaction_1")])
-        A += weights.stiffness * sp.Matrix(dofs, dofs, lambda a, b: f.dot(reach.by_qq[a][b]))
-        for a in range(dofs):
-            turning = weights.stiffness * f.dot(turned(reach.by_q[:, a]))
-            B[2, a] += turning
-            C[a, 2] += turning
-        D[2, 2] -= weights.stiffness * f.dot(reach.whole)
+    blocks = _Blocks(A, X.T * VS + pulls.T, S.T * VX + pulls, X.T * VX)
+    _add_turning(trace, blocks, weights, sp.Matrix([symbol("reaction_0"), symbol("reaction_1")]), reach)
+    for (point, of_core), force in zip(core_reaches(forces), _core_forces(forces), strict=True):
+        _add_hanging(trace, blocks, _weighted(weights, symmetric, forces, point.name), of_core)
+        _add_turning(trace, blocks, weights, -force, of_core)
     handed = weights.handed
     if not (symmetric or weights.definite):
-        A += _slowing(dofs)
+        blocks.A[:, :] += _slowing(dofs)
         handed = [symbol("slowing")]
+    A, B, C, D = blocks
     A = _let_matrix(trace, symmetric, "A", A)
     B = trace.let("B", B)
     C = B.T if symmetric else trace.let("C", C)
@@ -452,6 +424,39 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
         stores={"descent": list(descent)}
         | ({"pivots": [A[r, c] for r in range(dofs) for c in range(r, dofs)]} if counted else {}),
     )
+
+
+class _Blocks(NamedTuple):
+    """The matrix of one segment's coordinates and what they hang on, by rows: A, C; B, D."""
+
+    A: sp.Matrix
+    B: sp.Matrix
+    C: sp.Matrix
+    D: sp.Matrix
+
+
+def _add_turning(trace: Trace, blocks: _Blocks, weights: Weights, f: sp.Matrix, reach: Reach) -> None:
+    """Add the reach's second derivatives along a reaction f at its end."""
+    if weights.stiffness == 0:
+        return
+    f = trace.let(f"{reach.prefix}turning", weights.stiffness * f)
+    for a, row in enumerate(reach.by_qq):
+        for b, second in enumerate(row):
+            blocks.A[a, b] += f.dot(second)
+        across = f.dot(turned(reach.by_q[:, a]))
+        blocks.B[2, a] += across
+        blocks.C[a, 2] += across
+    blocks.D[2, 2] -= f.dot(reach.whole)
+
+
+def _add_hanging(trace: Trace, blocks: _Blocks, V: sp.Matrix, reach: Reach) -> None:
+    """Add the matrix V, shape (2, 2), of a point that hangs by that reach, and on which nothing hangs."""
+    S, X = reach.by_q, reach.transition[:2, :]
+    VS, VX = trace.let(f"{reach.prefix}VS", V * S), trace.let(f"{reach.prefix}VX", V * X)
+    blocks.A[:, :] += S.T * VS
+    blocks.B[:3, :] += X.T * VS
+    blocks.C[:, :3] += S.T * VX
+    blocks.D[:3, :3] += X.T * VX
 
 
 def coupled_by(forces: SceneForces, weights: Weights) -> list[CableSymbols]:

@@ -170,6 +170,11 @@ class Scene:
         return self.arm.payloads_on_a_disk
 
     @property
+    def core_has_mass(self) -> bool:
+        """Whether the core's own mass counts: the arm has its density, and some effect acts on masses."""
+        return self.arm.core_density is not None and any(effect.place == "mass" for effect in self.effects)
+
+    @property
     def spans(self) -> bool:
         """Whether cables run past nodes that are not disks: then they join poses further apart."""
         return self.cables > 0 and self.arm.subsegments > 1
@@ -191,8 +196,7 @@ class Scene:
         known: dict[str, np.ndarray | float] = {}
         known.update(self.arm.segment_columns() if place == "segment" else self.arm.node_columns())
         for effect in self.effects:
-            if (effect.place == "disk") == (place == "disk"):
-                known.update(effect.columns(self.arm))
+            known.update(effect.columns(self.arm))
         names = list(columns)
         for name in names:
             if name not in known:

@@ -4,6 +4,8 @@ A segment's coordinates are its bend angle phi = k L and its elongation e = L - 
 follow from them. With h = phi / 2 its far end is a chord at half the angle (Rone 2012, Eq. 11):
 
     x = L sigma_0(h) cos h,   y = L sigma_0(h) sin h,   theta = phi
+
+A point of its core, a part s of the way along, is where the segment would end with s phi and s L.
 """
 
 from collections.abc import Sequence
@@ -100,8 +102,12 @@ class SegmentSymbols:
     @cached_property
     def displacement(self) -> sp.Matrix:
         """Far end in the near end's frame, shape (2, 1), m. Rone 2012, Eq. 11."""
-        h = self.half_angle
-        chord = self.length * Sigma(0, h)
+        return self.displacement_at(1)
+
+    def displacement_at(self, fraction: float) -> sp.Matrix:
+        """The same of the point of the core that is this part of the way along it."""
+        h = fraction * self.half_angle
+        chord = fraction * self.length * Sigma(0, h)
         return sp.Matrix([chord * Sigma(-1, h), chord * h * Sigma(0, h)])
 
     @cached_property
@@ -171,7 +177,7 @@ class SpanSymbols:
 
 
 class MassSymbols(NamedTuple):
-    """A mass on a disk: kg and kg m^2, and the motion of its centre, vectors in base axes."""
+    """A mass: kg and kg m^2, and the motion of its centre, vectors in base axes."""
 
     mass: Any
     inertia: Any
@@ -253,3 +259,33 @@ class DiskSymbols:
     def angular_speed(self) -> Any:
         """|omega|."""
         return size(self.angular_velocity)
+
+
+class CorePointSymbols:
+    """One of the points along a segment that carry the core's own mass: position, velocity, acceleration.
+
+    ``fraction`` is its part of the way along. It turns with nothing: the core's rotary inertia is left out.
+    """
+
+    def __init__(self, number: int, fraction: float) -> None:
+        self.name = f"core_{number}"
+        self.fraction = fraction
+        self.position, self.velocity, self.acceleration = (
+            (symbol(f"{self.name}_{quantity}_x"), symbol(f"{self.name}_{quantity}_y"))
+            for quantity in ("position", "velocity", "acceleration")
+        )
+        self.angle = self.angular_velocity = self.angular_acceleration = sp.Integer(0)
+        self.coordinates = [*self.position]
+        self.rates = [*self.velocity]
+        self.accelerations = [*self.acceleration]
+
+    def __getattr__(self, name: str) -> sp.Symbol:
+        return _parameter(name)
+
+    @cached_property
+    def masses(self) -> list[MassSymbols]:
+        """The point's own, without extent."""
+        own = MassSymbols(
+            symbol("core_point_mass"), sp.Integer(0), self.position, self.velocity, self.acceleration
+        )
+        return [own]

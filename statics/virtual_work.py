@@ -8,17 +8,22 @@ so that no whole-arm expression is ever formed.
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import starmap
 from typing import Any
 
 import sympy as sp
 
+from statics.core_mass import FRACTIONS
 from statics.effects import Effect, Pair
 from statics.errors import InputError
 from statics.scene import Scene
-from statics.segment import CableSymbols, DiskSymbols, SegmentSymbols, SpanSymbols
+from statics.segment import CableSymbols, CorePointSymbols, DiskSymbols, SegmentSymbols, SpanSymbols
 
 Groups = list[tuple[Effect, list[Pair]]]
 """Effects, each with its pairs at one place."""
+
+Symbols = SegmentSymbols | SpanSymbols | DiskSymbols | CorePointSymbols
+"""What the pairs at one place are written in."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,8 @@ class Forces:
 class SceneForces:
     """The forces of one segment, of one disk, and of one span, with the symbols that they are written in.
 
-    A span that is one segment has no forces of its own: they are the segment's. ``inputs`` are the names of
+    A span that is one segment has no forces of its own: they are the segment's. ``core`` are the points
+    along a segment that carry its core's mass, ``on_core`` the forces on them. ``inputs`` are the names of
     the numbers that drive the scene. ``conservative`` says that every load at rest has a potential; then
     all matrices are symmetric.
     """
@@ -55,6 +61,8 @@ class SceneForces:
     on_disk: Forces
     span: SpanSymbols | None = None
     on_span: Forces | None = None
+    core: tuple[CorePointSymbols, ...] = ()
+    on_core: tuple[Forces, ...] = ()
 
     @property
     def cables(self) -> list[CableSymbols]:
@@ -70,7 +78,9 @@ class SceneForces:
     def places(self) -> dict[str, Forces]:
         """Forces by where they act."""
         places = {"segment": self.on_segment, "disk": self.on_disk}
-        return places if self.on_span is None else places | {"span": self.on_span}
+        if self.on_span is not None:
+            places["span"] = self.on_span
+        return places | {point.name: part for point, part in zip(self.core, self.on_core, strict=True)}
 
 
 def dot(first: Any, second: Any) -> Any:
@@ -144,12 +154,12 @@ def _stored(load: Any) -> Any:
     return -sp.integrate(load, (_OWN, 0, _OWN))
 
 
-def collect(effects: Iterable[Effect], place: str, at: Any) -> Groups:
-    """The pairs of every effect at that place; a displacement that the scene does not have drops out."""
+def collect(effects: Iterable[Effect], places: Iterable[str], at: Any) -> Groups:
+    """The pairs of every effect at these places; a displacement that the scene does not have drops out."""
     return [
         (effect, [pair for pair in effect.pairs(at) if pair.displacement != 0])
         for effect in effects
-        if effect.place == place
+        if effect.place in places
     ]
 
 
@@ -162,16 +172,19 @@ def derive_statics(scene: Scene) -> SceneForces:
 
 
 def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
-    """The forces at a segment, at a disk and, if the scene has spans of several segments, at a span."""
+    """The forces at a segment and at a disk; at a span and at points of the core, if the scene has them."""
     segment = SegmentSymbols(scene.coordinates, scene.cable_kinds, scene.holes_differ)
     disk = DiskSymbols(scene.payloads, scene.followers_among_driven, scene.has_followers)
     span = SpanSymbols(scene.cable_kinds, scene.holes_differ) if scene.spans else None
-    on_segment = collect(scene.effects, "segment", segment)
-    on_disk = collect(scene.effects, "disk", disk)
-    on_span = collect(scene.effects, "span", span or segment)
+    core = tuple(starmap(CorePointSymbols, enumerate(FRACTIONS, start=1))) if scene.core_has_mass else ()
+    on_segment = collect(scene.effects, ("segment",), segment)
+    on_disk = collect(scene.effects, ("disk", "mass"), disk)
+    on_span = collect(scene.effects, ("span",), span or segment)
+    on_core = [collect(scene.effects, ("mass",), point) for point in core]
     if span is None:
         on_segment, on_span = on_segment + on_span, []
     places = [(on_segment, segment), (on_disk, disk), (on_span, span or segment)]
+    places += zip(on_core, core, strict=True)
     return SceneForces(
         all(have_potentials(groups, at.coordinates) for groups, at in places),
         scene.inputs,
@@ -181,10 +194,12 @@ def derive(scene: Scene, forces_at: Callable[[Groups, Any], Forces]) -> SceneFor
         forces_at(on_disk, disk),
         span,
         None if span is None else forces_at(on_span, span),
+        core,
+        tuple(map(forces_at, on_core, core)),
     )
 
 
-def _at_rest(groups: Groups, at: SegmentSymbols | DiskSymbols | SpanSymbols) -> Forces:
+def _at_rest(groups: Groups, at: Symbols) -> Forces:
     coordinates = at.coordinates
     pairs = [pair for _, group in groups for pair in group]
     force = generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)

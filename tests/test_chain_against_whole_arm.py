@@ -11,6 +11,7 @@ from whole_arm import (
     difference_matrix,
     directional,
     full_scene,
+    heavy_scene,
     random_state,
     relative_error,
     spanned_scene,
@@ -80,6 +81,16 @@ def test_accelerations_equal_kanes_method_where_cables_pass_nodes_between_disks(
             assert error < 10 * ROUNDING
 
 
+def test_accelerations_equal_kanes_method_for_a_heavy_core() -> None:
+    for disks in (1, 2, 3):
+        scene = heavy_scene(disks)
+        for seed in SEEDS:
+            q, u = random_state(scene, seed)
+            assert (
+                relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u)) < ROUNDING
+            )
+
+
 @pytest.mark.parametrize(("disks", "subsegments"), [(3, 1), pytest.param(2, 2, marks=pytest.mark.slow)])
 def test_accelerations_equal_kanes_method_for_arms_that_taper(disks: int, subsegments: int) -> None:
     scene = tapered_scene(disks, subsegments)
@@ -114,10 +125,10 @@ def test_accelerations_equal_kanes_method_of_many_digits_through_straight(bends:
 
 
 @pytest.mark.parametrize(
-    "number", ["L0", "EJ", "EA", "k0", "m", "I_xx", "g", "relaxation", "r_h", "force", "moment"]
+    "number", ["L0", "EJ", "EA", "k0", "m_c", "m", "I_xx", "g", "relaxation", "r_h", "force", "moment"]
 )
 def test_kanes_method_tells_when_one_number_is_wrong_by_a_ten_thousandth(number: str) -> None:
-    scene = full_scene(2)
+    scene = heavy_scene(2)
     arm = whole_arm.whole_arm(scene)
     wrong = replace(arm, **{number: 1.0001 * getattr(arm, number)})
     q, u = random_state(scene, seed=4)
@@ -172,7 +183,7 @@ def block_error(actual: np.ndarray, expected: np.ndarray, kinds: np.ndarray) -> 
     return worst
 
 
-@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, spanned_scene])
+@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, heavy_scene, spanned_scene])
 def test_exact_jacobian_equals_differences_of_the_rate(scene_of: Callable[[int], Scene]) -> None:
     scene = scene_of(4)
     dynamics = Dynamics(scene)

@@ -14,7 +14,7 @@ from continuum_dyn import Scenario, cost, load_scenario
 from continuum_dyn.cli import app
 from continuum_dyn.study import Method, MotionStudy
 from continuum_dyn.views import plots
-from statics import InputError
+from statics import InputError, Payload
 
 
 @pytest.fixture
@@ -86,10 +86,10 @@ def test_scene_that_the_exact_rod_does_not_know_has_no_meshes(
     brief: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cost, "effects", lambda *_: [])
-    heavy = replace(brief.scene.arm, core_density=7850.0)
+    heavy = replace(brief.scene.arm, payloads=(Payload(4, 0.01),))
     found = cost.measure(replace(brief, scene=replace(brief.scene, arm=heavy)))
     assert found.meshes == ()
-    assert "core_density" in found.no_meshes
+    assert "payloads" in found.no_meshes
 
 
 def test_equilibrium_has_no_cost_over_time() -> None:

@@ -114,9 +114,13 @@ def test_effect_left_out_leaves_no_trace_in_the_generated_source(name: str) -> N
     assert not found
 
 
+def acts_on_disks(effect: Effect) -> bool:
+    return effect.place in ("disk", "mass")
+
+
 def symbols_of(effect: Effect) -> SegmentSymbols | DiskSymbols:
     """What the effect's pairs are written in; a span is one segment here."""
-    if effect.place == "disk":
+    if acts_on_disks(effect):
         return DiskSymbols(payloads=1)
     return SegmentSymbols(("bend_angle", "elongation"), (CableKind(rubs=True),))
 
@@ -152,7 +156,7 @@ def test_statics_knows_nothing_of_motion() -> None:
 def test_partial_velocities_are_partial_displacements(effect: Effect) -> None:
     """Kane 1985, sec. 2.14: for r(q), dr'/du_i = dr/dq_i, so at rest virtual power is virtual work."""
     at = symbols_of(effect)
-    for _, displacement in collect([effect], effect.place, at)[0][1]:
+    for _, displacement in collect([effect], (effect.place,), at)[0][1]:
         for i, coordinate in enumerate(at.coordinates):
             moving = partial_velocity(displacement, at.coordinates, at.rates, i)
             assert moving == partial_displacement(displacement, coordinate)
@@ -162,7 +166,7 @@ def test_partial_velocities_are_partial_displacements(effect: Effect) -> None:
 def test_only_effects_in_motion_depend_on_rates_or_accelerations(effect: Effect) -> None:
     at = symbols_of(effect)
     changing = {str(s) for s in (*at.rates, *at.accelerations)}
-    pairs = collect([effect], effect.place, at)[0][1]
+    pairs = collect([effect], (effect.place,), at)[0][1]
     symbols = {str(s) for pair in pairs for s in _free_symbols(pair.load)}
     assert bool(symbols & changing) == (not effect.acts_at_rest)
 
@@ -176,9 +180,8 @@ def _free_symbols(load: object) -> set[object]:
 def test_what_dissipates_takes_energy_in_any_motion_and_has_a_symmetric_damping_matrix(name: str) -> None:
     effect = next(effect for effect in ONE_OF_EACH if effect.name == name)
     forces = derive_dynamics(Scene(ARM, {effect, Extension()}))
-    at, part = (
-        (forces.disk, forces.on_disk) if effect.place == "disk" else (forces.segment, forces.on_segment)
-    )
+    on_disks, on_segments = (forces.disk, forces.on_disk), (forces.segment, forces.on_segment)
+    at, part = on_disks if acts_on_disks(effect) else on_segments
     random = np.random.default_rng(2)
     assert part.damping == part.damping.T
     for size in (1e-100, 1e-3, 1.0, 1e3):

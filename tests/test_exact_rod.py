@@ -1,12 +1,13 @@
 """The exact rod between disks meets closed forms and its own balance, and judges the program."""
 
+from dataclasses import replace
 from math import pi
 from typing import ClassVar
 
 import numpy as np
 import pytest
 from conftest import UPPER, moving, rone2012, weightless_core
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_bvp, solve_ivp
 from scipy.special import ellipe, ellipk
 from test_large_rotations import MATTIASSON_1981, elastica_tip
 
@@ -24,6 +25,7 @@ from statics import (
     disk_loads,
     equilibrium,
 )
+from statics.effects import Effect
 from statics.exact_rod import RodError, RodShape, exact_rod
 
 UM = 1e-6
@@ -212,6 +214,61 @@ def work_displacements(extra: np.ndarray) -> np.ndarray:
     theta = poses(shape)[:, 2]
     hole = poses(shape)[:, :2] + UPPER.hole_offset * np.column_stack([-np.sin(theta), np.cos(theta)])
     return np.array([*shape.tip, -np.linalg.norm(np.diff(hole, axis=0), axis=1).sum()])
+
+
+# The core's own weight
+
+
+def heavy_core(disks: int, *effects: Effect, weight: float, area: float = 1.0) -> Scene:
+    """A core of 1 m, E J = 1 N m^2, E A = ``area`` N, ``weight`` (N) under 1 m/s^2; its disks have none."""
+    arm = Arm(disks, 1 / disks, youngs_modulus=1.0, second_moment=1.0, area=area, disk_mass=1e-15)
+    return Scene(replace(arm, core_density=weight / area), (Bending(), *effects))
+
+
+@pytest.mark.parametrize("weight", [1.0, 10.0, 40.0])
+def test_level_core_under_its_own_weight_solves_the_elasticas_boundary_value_problem(weight: float) -> None:
+    """E J theta'' = q (L - s) cos theta, theta(0) = 0, theta'(L) = 0, by collocation."""
+
+    def slope(s: np.ndarray, state: np.ndarray) -> np.ndarray:
+        _, _, theta, bend = state
+        return np.stack([np.cos(theta), np.sin(theta), bend, weight * (1 - s) * np.cos(theta)])
+
+    s = np.linspace(0.0, 1.0, 200)
+    ends = solve_bvp(
+        slope,
+        lambda base, tip: np.array([base[0], base[1], base[2], tip[3]]),
+        s,
+        np.stack([s, 0 * s, -0.1 * s, 0 * s]),
+        tol=1e-10,
+        max_nodes=100_000,
+    )
+    for disks in (1, 5):
+        shape = exact_rod(heavy_core(disks, Gravity((0.0, -1.0)), weight=weight))
+        assert shape.residual < 1e-12
+        np.testing.assert_allclose(shape.tip, ends.y[:3, -1], atol=1e-9)
+
+
+@pytest.mark.parametrize("weight", [0.2, -0.3])
+def test_core_along_gravity_lengthens_by_half_its_weight_over_its_axial_stiffness(weight: float) -> None:
+    scene = heavy_core(2, Gravity((np.sign(weight), 0.0)), Extension(), weight=abs(weight), area=4.0)
+    half_way = 0.5 + weight * (0.5 - 0.125) / 4.0
+    np.testing.assert_allclose(exact_rod(scene).disk_x, [half_way, 1 + weight / 8.0], atol=1e-13)
+
+
+def test_upright_core_buckles_under_7_84_e_j_over_its_length_squared() -> None:
+    """Greenhill 1881: q L^3 / E J = 7.8373, the square of 3/2 times the first zero of J_-1/3."""
+    upright = Gravity((-1.0, 0.0))
+    assert exact_rod(heavy_core(4, upright, weight=7.837)).tip[0] == pytest.approx(1.0, abs=1e-12)
+    with pytest.raises(RodError, match=r"ends at 78\.37% of the loads: beyond it the arm is not stable"):
+        exact_rod(heavy_core(4, upright, weight=10.0))
+
+
+def test_segments_of_an_arm_with_everything_on_it_tend_to_the_rod_with_second_order() -> None:
+    arm = replace(CROWDED.arm, core_density=1e5)
+    rod = exact_rod(Scene(arm, CROWDED.effects), CROWDED_TENSION).tip
+    meshes = (Scene(replace(arm, subsegments=m), CROWDED.effects) for m in (8, 16, 32))
+    apart = [np.hypot(*np.subtract(equilibrium(mesh, CROWDED_TENSION).tip, rod)[:2]) for mesh in meshes]
+    np.testing.assert_allclose(np.log2(np.divide(apart[:-1], apart[1:])), 2.0, atol=0.07)
 
 
 # The judge's verdict on the program

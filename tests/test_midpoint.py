@@ -16,6 +16,7 @@ from whole_arm import (
     difference_matrix,
     full_scene,
     gradient,
+    heavy_scene,
     random_state,
     relative_error,
     stiff_scene,
@@ -64,7 +65,7 @@ def energy_error(found: Trajectory) -> np.ndarray:
 # ---- momenta ----
 
 
-@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, bare_scene])
+@pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, bare_scene, heavy_scene])
 def test_momenta_and_slopes_are_those_of_the_whole_arm(scene_of: Callable[[int], Scene]) -> None:
     """Momenta M u by sympy's KanesMethod, dT/dq and dV/dq by complex steps of the energies."""
     scene = undamped(scene_of(3))

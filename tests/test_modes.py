@@ -190,8 +190,17 @@ def test_many_equal_disks_swing_like_a_cantilever_beam() -> None:
 
 def test_core_with_mass_swings_like_a_cantilever_beam() -> None:
     coarse, fine = roots(beam(20, core=1.0 - 1e-12)), roots(beam(40, core=1.0 - 1e-12))
-    np.testing.assert_allclose((coarse - CANTILEVER) / (fine - CANTILEVER), 4.0, rtol=0.1)  # second order
+    assert (fine > CANTILEVER).all()  # arcs are some of the beam's shapes: from above (Rayleigh)
+    np.testing.assert_allclose((coarse - CANTILEVER) / (fine - CANTILEVER), 4.0, rtol=0.01)  # second order
     np.testing.assert_allclose((4 * fine - coarse) / 3, CANTILEVER, rtol=1e-5)
+
+
+def test_mass_along_the_core_is_better_than_at_the_ends_of_its_segments() -> None:
+    """Twenty segments: the first frequency, which goes by the square, to 0.05 % instead of 5 %."""
+    along, at_ends = (roots(beam(20, core=core)) / CANTILEVER - 1 for core in (1.0 - 1e-12, 0.0))
+    assert (np.abs(at_ends) > (90, 12, 4) * np.abs(along)).all()
+    assert along[0] < 2.5e-4
+    assert at_ends[0] < -0.02
 
 
 def test_shapes_are_those_of_a_cantilever_beam() -> None:

@@ -91,15 +91,6 @@ def test_hole_limit_is_found_between_disks_too() -> None:
     assert above.outcome is Outcome.GEOMETRY_LIMIT
 
 
-def test_core_mass_on_the_nodes_adds_up() -> None:
-    arm = meshed(8, density=7800.0).arm
-    mass = np.asarray(arm.node_columns()["node_mass"])
-    assert arm.disk_mass is not None
-    assert arm.area is not None
-    core = 7800.0 * arm.area * arm.total_length
-    assert mass.sum() == pytest.approx(4 * arm.disk_mass + core * (1 - 1 / 64))
-
-
 # ---- motion ----
 
 

@@ -64,7 +64,7 @@ def sampled(seed: int) -> Scene:
     random = np.random.default_rng(seed)
     there = dict(zip((effect.name for effect in OPTIONAL), random.random(len(OPTIONAL)) < 0.5, strict=True))
     there["cable_friction"] &= there["cables"]
-    meshed, tapered, laden, following, based, moves, by_length = random.random(7) < 0.5
+    meshed, tapered, laden, following, based, moves, by_length, heavy = random.random(8) < 0.5
     effects = [effect for effect in OPTIONAL if there[effect.name]]
     effects = [FOLLOWING if following and effect.name == "loads" else effect for effect in effects]
     offsets = (0.009, 0.008, 0.006) if tapered else 0.008
@@ -74,7 +74,7 @@ def sampled(seed: int) -> Scene:
         "rone2012",
         disks=2,
         subsegments=2 if meshed else 1,
-        core_density=7800.0 if meshed else None,
+        core_density=7800.0 if meshed or heavy else None,
         reference_curvature=3.0,
         cables=(upper, Cable("lower", -0.006, anchor=1, friction=0.3, slip_speed=0.03)),
         payloads=(Payload(2, 0.01, 1e-6, (0.005, -0.003)),) if laden else (),
@@ -208,6 +208,6 @@ def test_subset_of_the_effects_agrees_with_kanes_method(seed: int) -> None:
         q, u = random_state(scene, state, bend=0.7)
         chain, (w, power) = Chain(scene, q, u), whole_motion(scene, q, u)
         error = relative_error(chain.accelerations(), w)
-        assert error < 2e-11, [effect.name for effect in scene.effects]
+        assert error < 5e-11, [effect.name for effect in scene.effects]
         if scene.arm.base_moves:
             assert chain.base_power() == pytest.approx(power, rel=1e-9)

@@ -17,6 +17,7 @@ import numpy as np
 import sympy as sp
 from sympy.physics.mechanics import (
     KanesMethod,
+    Particle,
     Point,
     ReferenceFrame,
     RigidBody,
@@ -31,18 +32,21 @@ from statics.scene import Scene
 
 # ---- the numbers of an arm ----
 
+LOBATTO_INSIDE = ((1 - 5**-0.5) / 2, (1 + 5**-0.5) / 2)
+"""Parts of a segment's way along it where 5/12 of its core's mass stand; 1/12 stand on either end."""
+
 
 @dataclass(frozen=True, eq=False)
 class WholeArm:
     """An arm in the paper's letters, SI units; what a scene leaves out is zero here.
 
-    ``n`` segments, with ``L0``, ``EJ``, ``EA`` and ``k0`` of each, shape (n,); every ``step``-th of their
-    ends is a disk. ``m`` and ``I_xx`` hold what stands on each end, shape (n,), so do the dead loads
-    ``force`` (n, 2) and ``moment`` (n,), and the forces ``follower`` (n, 2) in axes that turn with the end.
-    ``r_h`` has shape (cables, disks + 1), the base's first; ``last`` (the anchor's disk) has one number for
-    each cable; ``relaxation`` is eta / E. ``payload`` holds mass, inertia and offset of each, shape
-    (payloads, 4), and ``carriers`` the ends that they are fixed to.
-    ``base`` holds the pose and the velocity of a base that is not at the origin, shape (2, 3), or is None.
+    ``n`` segments, with ``L0``, ``EJ``, ``EA``, ``k0`` and the core's own mass ``m_c`` of each, shape (n,);
+    every ``step``-th of their ends is a disk. ``m`` and ``I_xx`` hold what stands on each end, shape (n,), so
+    do the dead loads ``force`` (n, 2) and ``moment`` (n,), and the forces ``follower`` (n, 2) in axes that
+    turn with the end. ``r_h`` has shape (cables, disks + 1), the base's first; ``last`` (the anchor's disk)
+    has one number for each cable; ``relaxation`` is eta / E. ``payload`` holds mass, inertia and offset of
+    each, shape (payloads, 4), and ``carriers`` the ends that carry them. ``base`` holds the pose and the
+    velocity of a base that is not at the origin, shape (2, 3), or is None.
     """
 
     n: int
@@ -52,6 +56,7 @@ class WholeArm:
     EJ: np.ndarray
     EA: np.ndarray
     k0: np.ndarray
+    m_c: np.ndarray
     m: np.ndarray
     I_xx: np.ndarray
     g: np.ndarray
@@ -73,7 +78,12 @@ class WholeArm:
     @property
     def core(self) -> list[np.ndarray]:
         """In the order of ``_Symbols.core``."""
-        return [self.L0, self.EJ, self.EA, self.k0]
+        return [self.L0, self.EJ, self.EA, self.k0, self.m_c]
+
+    @property
+    def core_points(self) -> int:
+        """Number of points between the ends of a segment that carry the core's mass."""
+        return len(LOBATTO_INSIDE) if self.m_c.any() else 0
 
     def tension_along(self, tension: np.ndarray) -> np.ndarray:
         """Tension of every cable from disk to disk, shape (cables, disks): zero beyond the anchor.
@@ -100,10 +110,10 @@ def whole_arm(scene: Scene) -> WholeArm:
     I_xx[step - 1 :: step] = arm.per_disk("disk_inertia") if RotaryInertia in has else 0.0
     L0 = np.repeat(arm.per_disk("disk_spacing") / step, step)
     A = np.repeat(arm.per_disk("area"), step)
+    m_c = (arm.core_density or 0.0) * A * L0
     for i in range(n):
-        core = (arm.core_density or 0.0) * A[i] * L0[i]
-        m[i] += core / 2
-        m[i - 1] += core / 2 if i > 0 else 0.0
+        m[i] += m_c[i] / 12
+        m[i - 1] += m_c[i] / 12 if i > 0 else 0.0
     return WholeArm(
         n=n,
         step=step,
@@ -112,6 +122,7 @@ def whole_arm(scene: Scene) -> WholeArm:
         EJ=np.repeat(E * arm.per_disk("second_moment"), step),
         EA=np.repeat(E, step) * A,
         k0=np.repeat(arm.per_disk("reference_curvature"), step),
+        m_c=m_c,
         m=m,
         I_xx=I_xx,
         g=np.array(gravity.acceleration if isinstance(gravity, Gravity) else (0.0, 0.0)),
@@ -153,6 +164,11 @@ def spanned_scene(disks: int, subsegments: int = 2) -> Scene:
     arm = Arm.preset("rone2012", disks=disks, reference_curvature=3.0, **meshed)
     at_rest = (Bending(), Extension(), Gravity(), Cables())
     return Scene(arm, (*at_rest, Inertia(), RotaryInertia(), MaterialDamping(1.2e-3)))
+
+
+def heavy_scene(disks: int, **changes: Any) -> Scene:
+    """Every effect, and a core as heavy as its disks."""
+    return full_scene(disks, core_density=7.8e4, **changes)
 
 
 def tapered_scene(disks: int, subsegments: int = 1) -> Scene:
@@ -202,13 +218,16 @@ def relative_error(actual: np.ndarray, expected: np.ndarray) -> float:
 class _Symbols:
     """What the equations of motion are written in."""
 
-    def __init__(self, n: int, extends: bool, cables: int, step: int, payloads: int, free: bool) -> None:
+    def __init__(
+        self, n: int, extends: bool, cables: int, step: int, payloads: int, core_points: int, free: bool
+    ) -> None:
         self.step = step
+        self.inside = LOBATTO_INSIDE[:core_points]
         self.phi, self.phi_rate = dynamicsymbols(f"phi1:{n + 1}"), dynamicsymbols(f"omega1:{n + 1}")
         self.e = dynamicsymbols(f"e1:{n + 1}") if extends else ()
         self.e_rate = dynamicsymbols(f"v1:{n + 1}") if extends else ()
         self.numbers = sp.symbols("g_x g_y relaxation")
-        self.core = [sp.symbols(f"{name}_1:{n + 1}") for name in ("L0", "EJ", "EA", "k0")]
+        self.core = [sp.symbols(f"{name}_1:{n + 1}") for name in ("L0", "EJ", "EA", "k0", "m_c")]
         self.m, self.I_xx = sp.symbols(f"m1:{n + 1}"), sp.symbols(f"I1:{n + 1}")
         self.r_h = sp.Matrix(cables, n // step + 1, lambda c, i: sp.Symbol(f"r{c}_{i}"))
         self.tension = sp.Matrix(cables, n // step, lambda c, i: sp.Symbol(f"tau{c}_{i}"))
@@ -265,7 +284,7 @@ def _disk_loads(s: _Symbols, frames: list[ReferenceFrame], centers: list[Point])
 
 def _core_moments(s: _Symbols, frames: list[ReferenceFrame]) -> list[Any]:
     """Bending moments of a Kelvin-Voigt core on the two disks of every segment (Eq. 20)."""
-    (L0, EJ, _EA, k0), (*_, relaxation) = s.core, s.numbers
+    (L0, EJ, _EA, k0, _m_c), (*_, relaxation) = s.core, s.numbers
     loads: list[Any] = []
     for i, phi in enumerate(s.phi):
         moment = EJ[i] * ((phi + relaxation * s.phi_rate[i]) / L0[i] - k0[i]) * frames[0].z
@@ -275,7 +294,7 @@ def _core_moments(s: _Symbols, frames: list[ReferenceFrame]) -> list[Any]:
 
 def _axial_forces(s: _Symbols) -> sp.Matrix:
     """Generalized forces of a Kelvin-Voigt core along its length: they work along e alone."""
-    (L0, _EJ, EA, _k0), (*_, relaxation) = s.core, s.numbers
+    (L0, _EJ, EA, _k0, _m_c), (*_, relaxation) = s.core, s.numbers
     along = [-EA[i] / L0[i] * (e + relaxation * s.e_rate[i]) for i, e in enumerate(s.e)]
     return sp.Matrix([*[0] * len(s.phi), *along, *[0] * len(s.base)])
 
@@ -311,34 +330,68 @@ def _payload_bodies(
     return bodies, loads
 
 
+def _core_particles(
+    s: _Symbols, frames: list[ReferenceFrame], centers: list[Point]
+) -> tuple[list[Particle], list[Any]]:
+    """The core's own mass along each segment, on its arc, and its weight."""
+    *_, g_x, g_y, _relaxation = s.numbers
+    world, particles, loads = s.world, [], []
+    for i, phi in enumerate(s.phi):
+        L = s.core[0][i] + s.e[i] if s.e else s.core[0][i]
+        k, m, near = phi / L, sp.Rational(5, 12) * s.core[4][i], frames[i]
+        for part in s.inside:
+            x, y = sp.sin(part * phi) / k, (1 - sp.cos(part * phi)) / k
+            name = f"core{i}_{len(particles)}"
+            point = centers[i].locatenew(name, x * near.x + y * near.y)
+            point.set_vel(near, s.rate(x) * near.x + s.rate(y) * near.y)
+            point.v1pt_theory(centers[i], world, near)
+            particles.append(Particle(name, point, m))
+            loads.append((point, m * g_x * world.x + m * g_y * world.y))
+    return particles, loads
+
+
 @cache
 def kane_equations(
-    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...] = (), free: bool = False
+    n: int,
+    extends: bool,
+    cables: int,
+    step: int,
+    carriers: tuple[int, ...] = (),
+    core_points: int = 0,
+    free: bool = False,
 ) -> tuple[_Symbols, sp.Matrix, sp.Matrix]:
     """Mass matrix M and forcing f of M u' = f: rates of all bends, all elongations, and of a ``free`` base.
 
     What holds such a base, or drives it, is for the caller to add.
     """
-    s = _Symbols(n, extends, cables, step, len(carriers), free)
+    s = _Symbols(n, extends, cables, step, len(carriers), core_points, free)
     frames, centers = _place_disks(s)
     disks = [
         RigidBody(f"disk{i}", centers[i], frames[i], m, (inertia(frames[i], 0, 0, I_xx), centers[i]))
         for i, (m, I_xx) in enumerate(zip(s.m, s.I_xx, strict=True), start=1)
     ]
     payloads, weights = _payload_bodies(s, carriers, frames, centers)
-    loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames), *weights]
+    core, core_weights = _core_particles(s, frames, centers)
+    loads = [*_disk_loads(s, frames, centers), *_core_moments(s, frames), *weights, *core_weights]
     for c in range(cables):
         loads += _cable_forces(s, c, frames, centers)
     kane = KanesMethod(s.world, s.q, s.u, kd_eqs=[sp.diff(q, "t") - u for q, u in zip(s.q, s.u, strict=True)])
-    kane.kanes_equations([*disks, *payloads], loads)
+    kane.kanes_equations([*disks, *payloads, *core], loads)
     return s, kane.mass_matrix, kane.forcing + _axial_forces(s)
 
 
 @cache
 def _kane_function(
-    n: int, extends: bool, cables: int, step: int, carriers: tuple[int, ...], free: bool, module: str
+    n: int,
+    extends: bool,
+    cables: int,
+    step: int,
+    carriers: tuple[int, ...],
+    core_points: int,
+    free: bool,
+    module: str,
 ) -> Callable[..., tuple[Any, Any]]:
-    s, mass, forcing = kane_equations(n, extends, cables, step, carriers, free)
+    s, mass, forcing = kane_equations(n, extends, cables, step, carriers, core_points, free)
     return sp.lambdify(s.arguments, (mass, forcing), modules=module, cse=True)
 
 
@@ -352,8 +405,8 @@ def _arguments(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray)
 
 
 def _equations(arm: WholeArm, module: str) -> Callable[..., tuple[Any, Any]]:
-    structure = (arm.n, arm.extends, len(arm.r_h), arm.step, arm.carriers, arm.base is not None)
-    return _kane_function(*structure, module)
+    structure = (arm.n, arm.extends, len(arm.r_h), arm.step, arm.carriers, arm.core_points)
+    return _kane_function(*structure, arm.base is not None, module)
 
 
 def mass_and_forcing(
@@ -411,6 +464,19 @@ def base_pose(arm: WholeArm) -> np.ndarray:
     return np.zeros(3) if arm.base is None else arm.base[0]
 
 
+def poses_along(arm: WholeArm, q: np.ndarray, part: float) -> tuple[np.ndarray, np.ndarray]:
+    """X and y of a point on each segment's arc, that part of the way along, each of shape (n,)."""
+    phi, L = q[:, 0], arm.L0 + (q[:, 1] if arm.extends else np.zeros(arm.n))
+    ends = zip(base_pose(arm), poses(arm, q), strict=True)
+    x, y, theta = (np.append(base, values)[:-1] for base, values in ends)
+    k = phi / L
+    along, across = np.sin(part * phi) / k, (1 - np.cos(part * phi)) / k
+    return (
+        x + np.cos(theta) * along - np.sin(theta) * across,
+        y + np.sin(theta) * along + np.cos(theta) * across,
+    )
+
+
 def cable_lengths(arm: WholeArm, q: np.ndarray) -> np.ndarray:
     """Hole-to-hole lengths from the holes' positions, shape (cables, disks). Rone 2012, Eq. 22-23."""
     ends = zip(base_pose(arm), poses(arm, q), strict=True)
@@ -436,6 +502,9 @@ def gravity_energy(arm: WholeArm, q: np.ndarray) -> Any:
     cosine, sine = np.cos(theta[at]), np.sin(theta[at])
     weight_x = arm.m @ x + m @ (x[at] + along * cosine - across * sine)
     weight_y = arm.m @ y + m @ (y[at] + along * sine + across * cosine)
+    for part in LOBATTO_INSIDE:
+        x, y = poses_along(arm, q, part)
+        weight_x, weight_y = weight_x + 5 / 12 * arm.m_c @ x, weight_y + 5 / 12 * arm.m_c @ y
     return -(arm.g[0] * weight_x + arm.g[1] * weight_y)
 
 

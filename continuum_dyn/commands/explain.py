@@ -104,15 +104,15 @@ def _print_equations(scene: Any, latex: bool) -> None:
     typer.echo("\nOne segment: its far end seen from its near disk (Eq. 11)")
     for name, value in zip("xy", forces.segment.displacement, strict=True):
         typer.echo(write(name, value, used))
-    for place, at in (
-        ("segment", forces.segment),
-        ("span", forces.span or forces.segment),
-        ("disk", forces.disk),
+    for where, places, at in (
+        ("segment", ("segment",), forces.segment),
+        ("span, disk to disk", ("span",), forces.span or forces.segment),
+        ("disk", ("disk", "mass"), forces.disk),
+        *(("point of the core, of two in a segment", ("mass",), point) for point in forces.core[:1]),
     ):
-        groups = collect(scene.effects, place, at)
+        groups = collect(scene.effects, places, at)
         if not groups:
             continue
-        where = "span, disk to disk" if place == "span" else place
         typer.echo(f"\nOne {where}: loads P and the displacements r they work along (Eq. 1)")
         for effect, pairs in groups:
             typer.echo(f"  {effect.name}")

@@ -42,7 +42,8 @@ def _columns_of_table_2(found: "Rone2012") -> dict[str, "np.ndarray"]:
 
     from continuum_dyn.reproduce import TABLE_2_FINITE_ELEMENTS, TABLE_2_VIRTUAL_WORK
 
-    shapes = {**found.unactuated.by_law, "unrounded": found.unrounded}
+    spread = {"core spread": found.core_spread.program, "core spread, exact rod": found.core_spread.rod}
+    shapes = {**found.unactuated.by_law, "unrounded": found.unrounded, **spread}
     ours = {name: np.column_stack([shape.disk_x, shape.disk_y]) for name, shape in shapes.items()}
     return {**ours, "paper": TABLE_2_VIRTUAL_WORK, "paper_finite_elements": TABLE_2_FINITE_ELEMENTS}
 
@@ -51,7 +52,7 @@ def _write_table_2(found: "Rone2012", path: Path) -> None:
     columns = _columns_of_table_2(found)
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        names = [name.replace(" ", "_") for name in columns]
+        names = [name.replace(",", "").replace(" ", "_") for name in columns]
         writer.writerow(["disk", *(f"{axis}_{name}" for name in names for axis in ("disk_x", "disk_y"))])
         for i in range(4):
             writer.writerow([i + 1, *(float(value) for column in columns.values() for value in column[i])])
@@ -81,6 +82,11 @@ def _show(found: "Rone2012") -> None:
         "core of 0.4 mm radius instead of Table 1's. By how many percent the program's sag is below the "
         f"paper's: {_below(found.unactuated.program)}; unrounded {_below(found.unrounded)}.\n"
     )
+    console.print(_mass_table(found))
+    console.print(
+        "Core spread: the arm of the same mass, but that of its steel core along the core and not in the "
+        "disks; by the program and as an exact rod.\n"
+    )
     console.print(_distance_table(found))
     console.print(
         "Percent errors are those of the distance from the base: the paper's, what its digits give, by how "
@@ -97,13 +103,28 @@ def _show(found: "Rone2012") -> None:
 
 def _height_table(found: "Rone2012") -> Any:
     columns = _columns_of_table_2(found)
-    names = {**dict.fromkeys(columns), "paper": "virtual work", "paper_finite_elements": "finite elements"}
+    titles = {"paper": "virtual work", "paper_finite_elements": "finite elements"}
+    shown = ("printed", "program", "exact rod", "unrounded", "paper", "paper_finite_elements")
     heights = plain_table(
-        "Table 2: y (um) without tension", "disk", *(title or name for name, title in names.items())
+        "Table 2: y (um) without tension", "disk", *(titles.get(name, name) for name in shown)
     )
     for i in range(4):
-        heights.add_row(str(i + 1), *(f"{column[i, 1] * 1e6:.3f}" for column in columns.values()))
+        heights.add_row(str(i + 1), *(f"{columns[name][i, 1] * 1e6:.3f}" for name in shown))
     return heights
+
+
+def _mass_table(found: "Rone2012") -> Any:
+    """Sags with the mass in the disks and with the core's part of it along the core."""
+    columns = _columns_of_table_2(found)
+    by_elements = columns["paper_finite_elements"][:, 1]
+    shown = ("paper", "program", "core spread", "exact rod", "core spread, exact rod")
+    titles = ("virtual work", "program", "core spread", "exact rod", "rod, spread")
+    masses = plain_table("Table 2: y (um), and percent of sag above finite elements", "disk", *titles)
+    for i in range(4):
+        y = [columns[name][i, 1] for name in shown]
+        cells = [f"{1e6 * at:.2f} {100 * (at / by_elements[i] - 1):+.2f}" for at in y]
+        masses.add_row(str(i + 1), *cells)
+    return masses
 
 
 def _below(program: "Equilibrium") -> str:

@@ -11,10 +11,10 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class Inertia:
-    """F = -m a along the position of each mass, of nodes and payloads (d'Alembert)."""
+    """F = -m a along the position of each mass (d'Alembert)."""
 
     name: ClassVar[str] = "inertia"
-    place: ClassVar[Place] = "disk"
+    place: ClassVar[Place] = "mass"
     account: ClassVar[Account] = "kinetic_energy"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()

@@ -20,7 +20,7 @@ class MassDamping:
     mass_damping_rate: NonNegative
 
     name: ClassVar[str] = "mass_damping"
-    place: ClassVar[Place] = "disk"
+    place: ClassVar[Place] = "mass"
     account: ClassVar[Account] = "dissipated_power"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()

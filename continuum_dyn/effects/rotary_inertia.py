@@ -17,7 +17,7 @@ class RotaryInertia:
     """
 
     name: ClassVar[str] = "rotary_inertia"
-    place: ClassVar[Place] = "disk"
+    place: ClassVar[Place] = "mass"
     account: ClassVar[Account] = "kinetic_energy"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()

@@ -7,7 +7,7 @@ import numpy as np
 
 from statics.arm import Arm
 
-Place = Literal["segment", "span", "disk"]
+Place = Literal["segment", "span", "disk", "mass"]
 Account = Literal["elastic_energy", "gravity_energy", "kinetic_energy", "input_power", "dissipated_power"]
 
 
@@ -22,11 +22,11 @@ class Effect(Protocol):
     """A frozen dataclass of parameters with one verb: ``pairs``.
 
     ``name`` is its key in scenario files; ``place`` says where the pairs stand (on each segment, on
-    each span from disk to disk, or on each disk and other node); ``account`` in which line of the power
-    ledger its work is booked; ``acts_at_rest`` is False for what exists in motion only; ``coordinates``
-    are those that it frees on a segment, beside the bend angle: ``elongation`` or none; ``arm_quantities``
-    are the numbers of the arm that it needs, ``quantities`` its own (glossary names); ``source`` is where it
-    comes from.
+    each span from disk to disk, on each disk and other node, or on each mass: a disk's, a payload's, the
+    core's own); ``account`` in which line of the power ledger its work is booked; ``acts_at_rest`` is False
+    for what exists in motion only; ``coordinates`` are those that it frees on a segment, beside the bend
+    angle: ``elongation`` or none; ``arm_quantities`` are the numbers of the arm that it needs, ``quantities``
+    its own (glossary names); ``source`` is where it comes from.
     """
 
     name: ClassVar[str]
@@ -39,7 +39,7 @@ class Effect(Protocol):
     source: ClassVar[str]
 
     def pairs(self, at: Any) -> list[Pair]:
-        """The pairs at one segment, span or disk, by arithmetic on the symbols handed in.
+        """The pairs at one such place, by arithmetic on the symbols handed in.
 
         They never depend on the values of parameters, which reach the kernel by ``columns``: kernels are kept
         for scenes of the same effects, whatever their numbers.

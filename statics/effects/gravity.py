@@ -11,12 +11,12 @@ from statics.effects.effect import Account, Pair, Place
 
 @dataclass(frozen=True, config=STRICT)
 class Gravity:
-    """F = m g along the position of each mass, of nodes and payloads; ``acceleration`` is g, m/s^2."""
+    """F = m g along the position of each mass; ``acceleration`` is g, m/s^2."""
 
     acceleration: Vector = (0.0, -9.81)
 
     name: ClassVar[str] = "gravity"
-    place: ClassVar[Place] = "disk"
+    place: ClassVar[Place] = "mass"
     account: ClassVar[Account] = "gravity_energy"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ()
