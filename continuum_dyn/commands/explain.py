@@ -108,9 +108,9 @@ def _print_equations(scene: Any, latex: bool) -> None:
         ("segment", ("segment",), forces.segment),
         ("span, disk to disk", ("span",), forces.span or forces.segment),
         ("disk", ("disk", "mass"), forces.disk),
-        *(("point of the core, of two in a segment", ("mass",), point) for point in forces.core[:1]),
+        *(("point of the core", ("mass",), point) for point in forces.core[:1]),
     ):
-        groups = collect(scene.effects, places, at)
+        groups = [(effect, pairs) for effect, pairs in collect(scene.effects, places, at) if pairs]
         if not groups:
             continue
         typer.echo(f"\nOne {where}: loads P and the displacements r they work along (Eq. 1)")
@@ -123,8 +123,8 @@ def _print_equations(scene: Any, latex: bool) -> None:
     for coordinate, value in zip(forces.segment.coordinates, forces.on_segment.force, strict=True):
         typer.echo(write(f"Q_{_letter(coordinate.name)}", value, used))
     typer.echo(
-        "\nMotion: the sum of P . dr'/du over all segments and disks is zero for each"
-        "\nrate u; the disks' loads reach a segment through the chain. At rest: the same"
+        "\nMotion: the sum of P . dr'/du over all of these is zero for each rate u; what"
+        "\nacts beyond a segment reaches it through the chain. At rest: the same"
         "\nwith dr/dq."
     )
     _print_letters(used)
