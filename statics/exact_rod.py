@@ -130,6 +130,8 @@ def _check(scene: Scene) -> None:
         raise InputError("the exact rod knows arms of equal segments only.")
     if scene.driven_loads:
         raise InputError("the exact rod does not know loads that change in time.")
+    if any(kind.coupled for kind in scene.cable_kinds):
+        raise InputError("the exact rod knows cables of given tension, without friction.")
     if scene.has_followers:
         raise InputError("the exact rod does not know loads that turn with their disk.")
     if scene.arm.payloads:

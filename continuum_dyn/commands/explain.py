@@ -119,6 +119,7 @@ def _print_equations(scene: Any, latex: bool) -> None:
             for pair in pairs:
                 typer.echo(write("P", pair.load, used))
                 typer.echo(write("r", pair.displacement, used))
+    _print_cable_laws(forces.coupled, used)
     typer.echo("\nGeneralized forces of one segment, its own loads: Q = sum of P . dr'/du (Eq. 5)")
     for coordinate, value in zip(forces.segment.coordinates, forces.on_segment.force, strict=True):
         typer.echo(write(f"Q_{_letter(coordinate.name)}", value, used))
@@ -128,6 +129,23 @@ def _print_equations(scene: Any, latex: bool) -> None:
         "\nwith dr/dq."
     )
     _print_letters(used)
+
+
+def _print_cable_laws(cables: Any, used: set[str]) -> None:
+    """The laws of tensions that hang together over all the segments that a cable passes."""
+    if not cables:
+        return
+    typer.echo("\nTensions along a cable; Lambda: its length from a hole to its anchor")
+    for cable in cables:
+        c = cable.number
+        if cable.kind.driven_by_length:
+            used |= {"cable_stiffness", "cable_rest_length", "cable_displacement", "length_beyond"}
+            typer.echo(f"    tau_{c} = k_c_{c}*max(0, Lambda_{c} - Lambda_0_{c} + delta_{c}), at the base")
+        if cable.kind.rubs:
+            used |= {"friction", "slip_speed", "slip_length", "length_beyond"}
+            typer.echo(f"    tension_lost_{c} = tau_{c} - T_{c}, where at each hole that turns it by beta")
+            typer.echo(f"    T_{c} becomes T_{c}*exp(-mu_{c}*|beta|*tanh(s)), s = -Lambda_{c}'/v_s_{c}")
+            typer.echo("    at rest s = (Lambda before - Lambda)/l_s")
 
 
 def _print_letters(used: set[str]) -> None:
