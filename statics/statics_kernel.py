@@ -30,7 +30,7 @@ def write(scene: Scene) -> str:
     names = [effect.name for effect in scene.effects]
     sources = [_CABLES] if forces.coupled else []
     sources += [*_SHARED, *([_PIVOTS, _BY_ENERGY] if forces.conservative else [_BY_RESIDUAL])]
-    if not (forces.conservative or scene.without_potential):
+    if any(kind.rubs for kind in scene.cable_kinds) and not scene.without_potential:
         held = recursion.eliminate_step(forces, recursion.HELD)
         steps.append(replace(held, name="eliminate_held_step"))
         sources += [_PIVOTS, _HELD]

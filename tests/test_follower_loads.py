@@ -57,7 +57,7 @@ def kernel_of(scene: Scene, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np
 
 def accelerations(scene: Scene, q: np.ndarray, u: np.ndarray, inputs: np.ndarray) -> np.ndarray:
     kernel, segments, disks = kernel_of(scene, motion_kernel.RECIPE)
-    pieces = np.array([[0.0, value, 0.0, 0.0, 0.0] for value in inputs]).reshape(-1, 5)
+    pieces = np.array([[0.0, value, 0.0, 0.0, 0.0, 0.0] for value in inputs]).reshape(-1, 6)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
     rate = kernel.rate(0.0, y, pieces, segments, disks, q.shape[1])
     return rate[q.size : 2 * q.size].reshape(q.shape)

@@ -19,9 +19,10 @@ from statics.errors import LogError
 from statics.quantities import QUANTITIES
 
 TRAJECTORY = {
-    *("time", "bend_angle", "bend_angle_rate", "elongation", "elongation_rate", "curvature", "length"),
-    *("disk_x", "disk_y", "disk_theta", "tension", "kinetic_energy", "elastic_energy", "gravity_energy"),
-    *("input_power", "dissipated_power", "input_work", "dissipated_energy", "segment", "disk"),
+    *("time", "bend_angle", "bend_angle_rate", "elongation", "elongation_rate", "curvature"),
+    *("length", "disk_x", "disk_y", "disk_theta", "tension", "cable_displacement", "kinetic_energy"),
+    *("elastic_energy", "gravity_energy", "input_power", "dissipated_power", "input_work"),
+    *("dissipated_energy", "segment", "disk"),
 }
 
 
