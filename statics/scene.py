@@ -60,8 +60,9 @@ class Scene:
         return Scene(arm, (effect for effect in self.effects if effect.acts_at_rest))
 
     def without(self, name: str) -> "Scene":
-        """The same scene without the effect of that name."""
-        return Scene(self.arm, (effect for effect in self.effects if effect.name != name))
+        """The same scene without the effect of that name; without cables none can rub, either."""
+        gone = {name, "cable_friction"} if name == "cables" else {name}
+        return Scene(self.arm, (effect for effect in self.effects if effect.name not in gone))
 
     @cached_property
     def coordinates(self) -> tuple[str, ...]:

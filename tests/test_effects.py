@@ -89,9 +89,7 @@ DAMPING = [
 
 
 def everything_but(name: str) -> Scene:
-    """Friction goes with the cables."""
-    gone = {name, "cable_friction"} if name == "cables" else {name}
-    return Scene(ARM, (effect for effect in ONE_OF_EACH if effect.name not in gone))
+    return Scene(ARM, ONE_OF_EACH).without(name)
 
 
 def test_one_of_each_is_every_registered_effect() -> None:
