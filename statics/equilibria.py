@@ -5,7 +5,7 @@ not stable, the outcome says so. Under loads without a potential statics alone c
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any
 
@@ -32,6 +32,14 @@ _OUTCOMES = {
 }
 
 
+class Critical(IntEnum):
+    """What becomes of a path of equilibria where one of them is about to lose or to gain stability."""
+
+    NO = 0
+    FOLD = 1
+    BRANCHING = 2
+
+
 @dataclass(frozen=True)
 class Equilibrium:
     """An arm at rest under ``tension``, or the search for it where ``found`` is False.
@@ -42,6 +50,9 @@ class Equilibrium:
     motion; ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
     it is not known: under loads without a potential, until the modes of small motion have been asked.
+    ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
+    ``critical`` says where its path of equilibria folds or branches, and ``jumped`` whether this one does not
+    continue the one before; None where that is not known.
     """
 
     outcome: Outcome
@@ -64,6 +75,9 @@ class Equilibrium:
     base_x: float | None = None
     base_y: float | None = None
     base_theta: float | None = None
+    left: tuple["Equilibrium", ...] = ()
+    critical: Critical = Critical.NO
+    jumped: bool | None = None
 
     @property
     def found(self) -> bool:
@@ -134,15 +148,29 @@ class StaticSolver:
         ``inputs`` are the scene's, ``Scene.inputs``; those of a base's motion play no part. ``before`` is
         where the arm comes from, or which way its cables last slipped: only friction asks for it.
         """
-        arm = self.scene.arm
+        arm, left = self.scene.arm, list[Equilibrium]()
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
         ended, iterations = search.NOT_FOUND, 0
         for slip_part in self._remember(before):
             self._set("slip_length", np.full(arm.segments, slip_part * arm.total_length))
-            ended, more = self.kernel.find_equilibrium(
-                q, inputs, self.segments, self.disks, arm.rest_length, MAX_ITERATIONS
-            )
+            ended, more = self._find(q, inputs, MAX_ITERATIONS)
             iterations += more
+            while ended == search.UNSTABLE and iterations < MAX_ITERATIONS:
+                left.append(self.examine(q, inputs, ended, iterations))
+                if not self.kernel.leave_saddle(q, inputs, self.segments, self.disks, arm.rest_length):
+                    return left.pop()
+                ended, more = self._find(q, inputs, MAX_ITERATIONS - iterations)
+                iterations += more
+        return replace(self.examine(q, inputs, ended, iterations), left=tuple(left))
+
+    def _find(self, q: np.ndarray, inputs: np.ndarray, most: int) -> tuple[int, int]:
+        """Move q to an equilibrium; returns how the search ended, and its iterations."""
+        numbers = (inputs, self.segments, self.disks, self.scene.arm.rest_length)
+        return self.kernel.find_equilibrium(q, *numbers, most)
+
+    def examine(self, q: np.ndarray, inputs: np.ndarray, ended: int, iterations: int = 0) -> Equilibrium:
+        """All that is told of coordinates, shape (segments, dofs), at which a search has ``ended``."""
+        arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         elastic, gravity, residual, negative = self.kernel.examine(q, inputs, self.segments, self.disks, pose)
         elongation = q[:, 1] if q.shape[1] == 2 else None
