@@ -1,10 +1,9 @@
-"""Equilibria of a scene, and ramps of them.
+"""Equilibria of a scene, one at a time.
 
 What is returned as an equilibrium is one: residual at rounding level. Where there is none, or where it is
 not stable, the outcome says so. Under loads without a potential statics alone cannot tell whether it is.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any
@@ -51,8 +50,8 @@ class Equilibrium:
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
     it is not known: under loads without a potential, until the modes of small motion have been asked.
     ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
-    ``critical`` says where its path of equilibria folds or branches, and ``jumped`` whether this one does not
-    continue the one before; None where that is not known.
+    ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from the
+    equilibrium before left the stable ones, if this one does not continue it.
     """
 
     outcome: Outcome
@@ -77,7 +76,7 @@ class Equilibrium:
     base_theta: float | None = None
     left: tuple["Equilibrium", ...] = ()
     critical: Critical = Critical.NO
-    jumped: bool | None = None
+    lost_at: "Equilibrium | None" = None
 
     @property
     def found(self) -> bool:
@@ -90,6 +89,21 @@ class Equilibrium:
         if self.found and self.unstable_directions is None:
             return None
         return self.outcome is Outcome.COMPLETED
+
+    @property
+    def jumped(self) -> bool:
+        """Whether this equilibrium of a ramp does not continue the one before."""
+        return self.lost_at is not None
+
+    @property
+    def drive(self) -> str:
+        """What it is under, in words: tensions and load factors."""
+        parts = []
+        if self.tension.size:
+            parts.append(f"tension {', '.join(f'{tau:g}' for tau in self.tension)} N")
+        if self.load_factor is not None:
+            parts.append(f"load factor {', '.join(f'{factor:g}' for factor in self.load_factor)}")
+        return f"at {' and '.join(parts)}" if parts else "without cables"
 
     @property
     def tip(self) -> tuple[float, float, float]:
@@ -212,16 +226,6 @@ class StaticSolver:
             if known == name or known.rpartition("_")[0] == name:
                 self.segments[:, column] = values
 
-    def ramp(self, tensions: Iterable[np.ndarray], start: np.ndarray | None = None) -> list[Equilibrium]:
-        """An equilibrium for each set of inputs, each from the last one that was found."""
-        points: list[Equilibrium] = []
-        before: Equilibrium | Slip = Slip.DRAWN_IN
-        for inputs in tensions:
-            points.append(self.solve(inputs, start, before))
-            if points[-1].found:
-                start, before = points[-1].coordinates, points[-1]
-        return points
-
     def branches(self, inputs: np.ndarray, near: Equilibrium) -> list[Equilibrium]:
         """Equilibria between which cables that rub may leave the arm, searched from one; else that one."""
         if not any(kind.rubs for kind in self.scene.cable_kinds):
@@ -255,13 +259,3 @@ def equilibrium(
     """
     values = scene.check_tension(tension)
     return StaticSolver(scene).solve(values, None if start is None else start.coordinates, before)
-
-
-def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
-    """Equilibria under one set of tensions after another, each found from the one before it.
-
-    Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
-    starts from the last one that was. With friction the first is that of cables drawn in, and every other
-    remembers the one before it. Raises ``InputError`` for tensions that do not fit.
-    """
-    return StaticSolver(scene).ramp([scene.check_tension(tension) for tension in tensions])
