@@ -22,7 +22,8 @@ def why(point: Equilibrium, growth: object | None = None, limit: Equilibrium | N
     if point.outcome is Outcome.GEOMETRY_LIMIT:
         meets = "holes meet: the cable's length from hole to hole reaches zero; try less tension"
         return f"{point.drive} {meets}" if limit is None else f"{at_limit(limit)}, on the way {point.drive}"
-    return f"no equilibrium found {point.drive} in {point.iterations} iterations; try a ramp from a lower tension"
+    lost = f"no equilibrium found {point.drive} in {point.iterations} iterations"
+    return f"{lost}; try a ramp from a lower tension"
 
 
 def at_limit(limit: Equilibrium) -> str:

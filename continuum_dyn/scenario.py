@@ -182,9 +182,7 @@ def _drive(cable: CableTable) -> tuple[Any, str]:
     return given[known[0]], known[0]
 
 
-def _ramp_or_profile(
-    drive: Any, quantity: str, path: Path, is_ramp: bool, table: str = "cables"
-) -> Any:
+def _ramp_or_profile(drive: Any, quantity: str, path: Path, is_ramp: bool, table: str = "cables") -> Any:
     if is_ramp:
         if isinstance(drive, float | int):
             return (float(drive),)

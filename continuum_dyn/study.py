@@ -30,8 +30,8 @@ class EquilibriumStudy:
 class RampStudy:
     """Where the arm rests under one set of tensions and load factors after another.
 
-    Along the ``path`` "stable" each is a stable equilibrium, searched from the one before; "arc_length" follows
-    the path of equilibria from the first one through its folds, stable or not.
+    Along the ``path`` "stable" each is a stable equilibrium, searched from the one before; "arc_length"
+    follows the path of equilibria from the first one through its folds, stable or not.
     """
 
     path: Literal["stable", "arc_length"] = "stable"
@@ -135,8 +135,8 @@ class Scenario:
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
     ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
     program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. ``load_factors``
-    has likewise a profile or a list for each driven load, ``base_motion`` those of x, y (m) and angle (rad) of a base that
-    moves. Raises ``InputError`` where these do not fit.
+    has likewise a profile or a list for each driven load, ``base_motion`` profiles of x, y (m) and angle
+    (rad) of a base that moves. Raises ``InputError`` where these do not fit.
     """
 
     scene: Scene

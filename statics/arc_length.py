@@ -35,8 +35,12 @@ HALF_DIFFERENCE = 0.5
 """Of places on the ramp, for the residual's derivative by the place: it is linear in tensions and factors."""
 NEAR_LIMIT = 1e-3
 """Clearance below which a path that cannot be followed any further has come to a geometric limit."""
+JUST_BEFORE = 1e-9
+"""On the ramp: there the stretch before one of its points counts."""
 LOCATED = 1e-13
-"""Of a step's length, within which folds and points of the ramp are located."""
+"""Of a step's length, within which folds, limits and points of the ramp are located."""
+BRANCHING_LOCATED = 1e-6
+"""Likewise branchings: there the matrix is singular, and has no tangent for what is closer."""
 
 
 @dataclass(frozen=True)
@@ -63,10 +67,11 @@ class Path:
 def follow_path(
     scene: Scene, tensions: Sequence[object], start: Equilibrium | None = None, *, steps: int = MOST_STEPS
 ) -> Path:
-    """The path of equilibria along a ramp of tensions, each what ``equilibrium`` takes, through all its folds.
+    """The path of equilibria along a ramp of tensions through all its folds.
 
-    It begins at the equilibrium that a search finds from ``start``, or from straight. Raises ``InputError``
-    for tensions that do not fit, and for scenes without a potential.
+    Each of ``tensions`` is what ``equilibrium`` takes. The path begins at the equilibrium that a search finds
+    from ``start``, or from straight, and takes at most so many ``steps``. Raises ``InputError`` for tensions
+    that do not fit, and for scenes without a potential.
     """
     solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
     return follow(solver, ramp, None if start is None else start.coordinates, steps)
@@ -149,9 +154,14 @@ class ArcLength:
         self.kernel.substitute_sweep(self.chain, descent, change)
         return change, negative
 
-    def tangent_at(self, q: np.ndarray, place: float) -> tuple[np.ndarray, int, float]:
-        """dq/dplace along the path, the number of unstable directions, and the clearance."""
-        by_place = self.by_place(q, place)
+    def tangent_at(
+        self, q: np.ndarray, place: float, backwards: bool = False
+    ) -> tuple[np.ndarray, int, float]:
+        """dq/dplace along the path, the number of unstable directions, and the clearance.
+
+        At one of the ramp's points it is that of the stretch ahead, or behind if the path goes backwards.
+        """
+        by_place = self.by_place(q, place - JUST_BEFORE if backwards else place)
         clearance = self.residual(q, self.inputs(place))[1]
         return *self.solve(by_place), clearance
 
@@ -159,7 +169,7 @@ class ArcLength:
         self, q: np.ndarray, place: float, towards: tuple[np.ndarray, float], corrections: int = 0
     ) -> _Place:
         """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
-        by_place, negative, clearance = self.tangent_at(q, place)
+        by_place, negative, clearance = self.tangent_at(q, place, backwards=towards[1] < 0.0)
         length = np.sqrt(self.inner(by_place, by_place) + 1.0)
         ahead = self.inner(by_place, towards[0]) + towards[1] >= 0.0
         length = length if ahead else -length
@@ -189,16 +199,14 @@ class ArcLength:
                 return self.place_at(q, place, (here.along, here.along_place), correction)
         return None
 
-    def at_place(self, near: _Place, place: float) -> _Place:
-        """The equilibrium at exactly that place, from one within rounding of it."""
-        residual, _ = self.residual(near.q, self.inputs(place))
-        change, _ = self.solve(residual)
-        if np.abs(change).max() > np.sqrt(search.AT_REST):
-            return near
-        return self.place_at(near.q + change, place, (near.along, near.along_place))
+    def at_point(self, near: _Place, point: float) -> _Place:
+        """The equilibrium at exactly a point of the ramp, from one within rounding of it; goes on."""
+        residual, _ = self.residual(near.q, self.inputs(point))
+        q = near.q + self.solve(residual)[0]
+        return self.place_at(q, point, (0.0 * q, near.along_place))
 
     def located(
-        self, here: _Place, there: float, value: Callable[[_Place], float]
+        self, here: _Place, there: float, value: Callable[[_Place], float], within: float = LOCATED
     ) -> tuple[_Place, float] | None:
         """Where, up to ``there`` along the tangent, a value changes its sign, and how far; None if lost."""
         found: dict[float, _Place] = {0.0: here}
@@ -212,14 +220,12 @@ class ArcLength:
             return value(found[length])
 
         try:
-            length = float(brentq(value_at, 0.0, there, xtol=LOCATED * there, rtol=8.9e-16))  # pyright: ignore[reportArgumentType]
+            length = float(brentq(value_at, 0.0, there, xtol=within * there, rtol=8.9e-16))  # pyright: ignore[reportArgumentType]
         except _LostError:
             return None
         return found[length], length
 
-    def follow(
-        self, first: Equilibrium, steps: int = MOST_STEPS, *, until_critical: bool = False
-    ) -> Path:
+    def follow(self, first: Equilibrium, steps: int = MOST_STEPS, *, until_critical: bool = False) -> Path:
         """The path from an equilibrium at the ramp's first point to its last, or to a fold or branching."""
         return _Follower(self, first).follow(steps, until_critical)
 
@@ -248,7 +254,7 @@ class _Follower:
             if critical or self.here.place in range(last + 1):
                 self._keep(critical)
             if critical and until_critical:
-                return self._ended(Outcome.COMPLETED)
+                return Path(Outcome.COMPLETED, self.points, self.places, self.points[-1])
             if not critical and self.here.place == last:
                 return self._ended(Outcome.COMPLETED)
             if self.here.place <= 0.0 and not self.forwards:
@@ -259,7 +265,7 @@ class _Follower:
         """The next point of the path: a step on, or what comes first on its way; None if there is none."""
         while self.length > SHORTEST_STEP:
             length, there = self.length, self.arc.corrected(self.here, self.length)
-            if there is not None and self._cosine(there) >= LEAST_COSINE:
+            if there is not None and self._is_smooth(there):
                 if there.corrections <= EASY:
                     self.length = min(1.5 * self.length, LONGEST_STEP)
                 stepped = self._cut(there, length)
@@ -268,33 +274,33 @@ class _Follower:
             self.length = 0.5 * min(length, self.length)
         return None
 
-    def _cosine(self, there: _Place) -> float:
+    def _is_smooth(self, there: _Place) -> bool:
+        """Whether the path turns little on the way; at the ramp's points it may have corners."""
         here = self.here
-        return self.arc.inner(here.along, there.along) + here.along_place * there.along_place
+        cosine = self.arc.inner(here.along, there.along) + here.along_place * there.along_place
+        return cosine >= LEAST_COSINE or _point_between(here.place, there.place) is not None
 
     def _cut(self, there: _Place, length: float) -> tuple[_Place, Critical, bool] | None:
-        """A step up to the first of what it passes: a geometric limit, a fold, a branching, a ramp's point."""
+        """A step up to the first of what it passes: a limit, a point of the ramp, a fold, a branching."""
         arc, here = self.arc, self.here
-        if there.clearance <= 0.0:
-            cut = arc.located(here, length, lambda at: at.clearance)
+        if there.clearance < search.AT_LIMIT:
+            cut = arc.located(here, length, lambda at: at.clearance - search.AT_LIMIT)
             return None if cut is None else (cut[0], Critical.NO, True)
-        folds = (there.along_place > 0.0) != self.forwards
-        before, beyond, critical = here.negative, there.negative, Critical.NO
-        if folds or before != beyond:
-            middle = 0.5 * (before + beyond)
-            cut = arc.located(
-                here, length, (lambda at: at.along_place) if folds else (lambda at: at.negative - middle)
-            )
-            if cut is None:
-                return None
-            (there, length), critical = cut, Critical.FOLD if folds else Critical.BRANCHING
         point = _point_between(here.place, there.place)
         if point is not None:
             cut = arc.located(here, length, lambda at: at.place - point)
-            return None if cut is None else (arc.at_place(cut[0], point), Critical.NO, False)
-        if critical:
-            there = there._replace(negative=beyond)
-        return there, critical, False
+            if cut is None:
+                return None
+            there, length = arc.at_point(cut[0], point), cut[1]
+        before, beyond = here.negative, there.negative
+        if (there.along_place > 0.0) != self.forwards:
+            cut, critical = arc.located(here, length, lambda at: at.along_place), Critical.FOLD
+        elif before != beyond:
+            middle, critical = 0.5 * (before + beyond), Critical.BRANCHING
+            cut = arc.located(here, length, lambda at: at.negative - middle, BRANCHING_LOCATED)
+        else:
+            return there, Critical.NO, False
+        return None if cut is None else (cut[0]._replace(negative=beyond), critical, False)
 
     def _keep(self, critical: Critical) -> None:
         here, before = self.here, self.points[-1]
@@ -322,7 +328,7 @@ class _Follower:
 
 
 def _point_between(place: float, other: float) -> float | None:
-    """The ramp's point strictly between two places on it that comes first on the way; None if there is none."""
+    """The ramp's point strictly between two places on it that comes first on the way; None without one."""
     if other > place:
         point = float(np.floor(place)) + 1.0
         return point if point < other else None

@@ -50,8 +50,8 @@ class Equilibrium:
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
     it is not known: under loads without a potential, until the modes of small motion have been asked.
     ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
-    ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from the
-    equilibrium before left the stable ones, if this one does not continue it.
+    ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from
+    the equilibrium before left the stable ones, if this one does not continue it.
     """
 
     outcome: Outcome

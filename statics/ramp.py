@@ -1,7 +1,7 @@
 """Ramps: a stable equilibrium for one set of inputs after another, none of which jumps without saying so.
 
-From one point of a ramp to the next the path of equilibria is continued. A cheap look at its slopes at both ends
-is enough where the two lie on one smooth path; elsewhere it is followed by arc length.
+From one point of a ramp to the next the path of equilibria is continued. A cheap look at its slopes at both
+ends is enough where the two lie on one smooth path; elsewhere it is followed by arc length.
 """
 
 from collections.abc import Iterable
@@ -15,7 +15,7 @@ from statics.outcome import Outcome
 from statics.scene import Scene
 
 SMOOTH = 0.25
-"""Difference of a path's slopes at two points from the way between them, over it, that needs no closer look."""
+"""Difference of a path's slopes at two points from the way between them, over it: no closer look below."""
 SAME = 1e-6
 """Root of the summed squares of the changes of bend angle, rad, below which two equilibria are the same."""
 
@@ -48,8 +48,10 @@ def ramp(
     return found
 
 
-def limit_on_the_way(solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None) -> Equilibrium | None:
-    """The equilibrium at which the way to inputs that have none comes to a geometric limit; None if none does.
+def limit_on_the_way(
+    solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None
+) -> Equilibrium | None:
+    """The equilibrium at which the way to inputs that have none comes to a geometric limit, if it does.
 
     The way leads from ``start``, or from slack cables and no loads that change.
     """
