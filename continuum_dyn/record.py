@@ -53,6 +53,8 @@ _PER_POINT = (
     "gravity_energy",
     "stable",
     "unstable_directions",
+    "critical",
+    "jumped",
     "residual",
     "base_x",
     "base_y",
@@ -205,15 +207,20 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
 
 
 def _points(run: Run) -> tuple[np.ndarray, list[Equilibrium], np.ndarray | None]:
-    """The equilibria that were found, their numbers in the study, and in a motion their times."""
+    """The equilibria that were found, their numbers in the study, and in a motion their times.
+
+    Unstable ones that a search has left stand before the one that it found, under the same number.
+    """
     asked = run.static_path or run.equilibria
-    found = [number for number, point in enumerate(asked) if point.found]
-    times = None
+    rows = [
+        (number, row) for number, point in enumerate(asked) if point.found for row in (*point.left, point)
+    ]
+    numbers, times = np.array([number for number, _ in rows], dtype=int), None
     if run.trajectory is not None:
         assert isinstance(run.scenario.study, MotionStudy)
         ends = np.array([0.0, run.scenario.study.duration])
-        times = (run.trajectory.time if run.static_path else ends)[found]
-    return np.array(found) + 1, [asked[number] for number in found], times
+        times = (run.trajectory.time if run.static_path else ends)[numbers]
+    return numbers + 1, [row for _, row in rows], times
 
 
 def _stacked(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:

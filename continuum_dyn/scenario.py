@@ -81,8 +81,14 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
     if file.loads:
         effects.append(DiskLoads(loads=tuple(map(_load, file.loads))))
     tension = tuple(_ramp_or_profile(*_drive(cable), path, is_ramp) for cable in file.cables)
+    factors = tuple(
+        _ramp_or_profile(load.factor, "factor", path, is_ramp, "loads")
+        for load in file.loads
+        if load.factor is not None
+    )
     if is_ramp:
-        tension = _repeated(tension)
+        repeated = _repeated((*tension, *factors))
+        tension, factors = repeated[: len(tension)], repeated[len(tension) :]
     motion = _base_motion(file.base, path) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
@@ -92,9 +98,7 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         study=file.study,
         solver=file.solver,
         accuracy=file.accuracy,
-        load_factors=tuple(
-            _profile(load.factor, path, "factor") for load in file.loads if load.factor is not None
-        ),
+        load_factors=factors,
         base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or path.stem,
@@ -178,17 +182,17 @@ def _drive(cable: CableTable) -> tuple[Any, str]:
     return given[known[0]], known[0]
 
 
-def _ramp_or_profile(drive: Any, quantity: str, path: Path, is_ramp: bool) -> Any:
+def _ramp_or_profile(drive: Any, quantity: str, path: Path, is_ramp: bool, table: str = "cables") -> Any:
     if is_ramp:
         if isinstance(drive, float | int):
             return (float(drive),)
         if not isinstance(drive, list):
             raise InputError(
-                f'[[cables]] a "ramp" study takes a number or a list of numbers for each {quantity}.'
+                f'[[{table}]] a "ramp" study takes a number or a list of numbers for each {quantity}.'
             )
         return tuple(map(float, drive))
     if isinstance(drive, list):
-        raise InputError(f'[[cables]] a list for {quantity} belongs to [study] kind = "ramp".')
+        raise InputError(f'[[{table}]] a list for {quantity} belongs to [study] kind = "ramp".')
     return _profile(drive, path, quantity)
 
 

@@ -54,7 +54,7 @@ Tension = Annotated[
     | ProfileTable,
     Discriminator(_drive_kind),
 ]
-Displacement = Annotated[
+AnyDrive = Annotated[
     Annotated[float, Tag("number")] | Annotated[list[float], Field(min_length=1), Tag("list")] | ProfileTable,
     Discriminator(_drive_kind),
 ]
@@ -106,7 +106,7 @@ class CableTable(BaseModel):
     hole_offset: NumberEach
     anchor: DiskNumber | None = None
     tension: Tension | None = None
-    cable_displacement: Displacement | None = None
+    cable_displacement: AnyDrive | None = None
     cable_stiffness: Positive | None = None
     friction: NonNegative = 0.0
     slip_speed: Positive | None = None
@@ -120,7 +120,7 @@ class LoadTable(BaseModel):
     force: Vector = (0.0, 0.0)
     moment: float = 0.0
     follower: bool = False
-    factor: NumberOrProfile | None = None
+    factor: AnyDrive | None = None
 
 
 class BaseTable(BaseModel):

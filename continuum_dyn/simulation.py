@@ -16,13 +16,16 @@ from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
 from continuum_dyn.profiles import Span, spans
+from continuum_dyn.resting_words import told_of_path, told_of_points, why
 from continuum_dyn.settling import settled, tip_gap
 from continuum_dyn.stability import Growth, judged, why_not_judged
 from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
 from continuum_dyn.trajectory import Trajectory
+from statics.arc_length import follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.outcome import Outcome
+from statics.ramp import limit_on_the_way, ramp
 
 TIME_PART = 0.25
 """Part of the accuracy that a mesh's integration may use up; two extrapolated use nearly twice that."""
@@ -143,48 +146,47 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
 def _statics(scenario: Scenario) -> Run:
     solver = StaticSolver(scenario.scene)
     if isinstance(scenario.study, RampStudy):
-        tensions = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
-        others = scenario.initial_tension[len(scenario.tension) :]
-        tensions = np.hstack([tensions, np.tile(others, (len(tensions), 1))])
+        inputs = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
+        others = scenario.initial_tension[inputs.shape[1] :]
+        inputs = np.hstack([inputs, np.tile(others, (len(inputs), 1))])
     else:
-        tensions = scenario.initial_tension[None, :]
+        inputs = scenario.initial_tension[None, :]
     solver.warm_up()
     started = time.perf_counter()
-    points = solver.ramp(tensions)
+    if isinstance(scenario.study, RampStudy) and scenario.study.path == "arc_length":
+        path = follow(solver, inputs)
+        solve_time = time.perf_counter() - started
+        return Run(scenario, path.outcome, told_of_path(path), path.points, solve_time=solve_time)
+    points = ramp(solver, inputs)
     solve_time = time.perf_counter() - started
-    message, growths = "", [None] * len(points)
+    message, growths = told_of_points(points), [None] * len(points)
     if any(point.stable is None for point in points):
         message = why_not_judged(scenario.scene) or ""
-        if not message:
+        if why_not_judged(scenario.scene) is None:
             points, growths = _judged(Dynamics(scenario.scene), points)
     outcome = Outcome.COMPLETED
-    for point, growth in zip(points, growths, strict=True):
+    before: Equilibrium | None = None
+    for point, growth, asked in zip(points, growths, inputs, strict=True):
         if point.outcome is not Outcome.COMPLETED:
-            outcome, message = point.outcome, _why(point, growth)
+            outcome, message = point.outcome, why(point, growth, _limit(solver, point, asked, before))
             break
+        before = point
     return Run(scenario, outcome, message, points, solve_time=solve_time)
+
+
+def _limit(
+    solver: StaticSolver, point: Equilibrium, inputs: np.ndarray, before: Equilibrium | None
+) -> Equilibrium | None:
+    """Where the way to a search that ended at a geometric limit comes to it."""
+    if point.outcome is not Outcome.GEOMETRY_LIMIT:
+        return None
+    return limit_on_the_way(solver, inputs, before)
 
 
 def _judged(dynamics: Dynamics, points: list[Equilibrium]) -> tuple[list[Equilibrium], list[Growth | None]]:
     """Equilibria, where their energy does not tell whether they are stable, as their modes do."""
     found = [judged(dynamics, point) if point.stable is None else (point, None) for point in points]
     return [point for point, _ in found], [growth for _, growth in found]
-
-
-def _why(point: Equilibrium, growth: Growth | None = None) -> str:
-    """What to tell of a search that did not end in a stable equilibrium, with what grows about it."""
-    at = (
-        f"at tension {', '.join(f'{tau:g}' for tau in point.tension)} N"
-        if point.tension.size
-        else "without cables"
-    )
-    if growth is not None:
-        return f"{growth}, {at}"
-    if point.outcome is Outcome.UNSTABLE_EQUILIBRIUM:
-        return f"unstable in {point.unstable_directions} directions {at}"
-    if point.outcome is Outcome.GEOMETRY_LIMIT:
-        return f"{at} holes meet: the cable's length from hole to hole reaches zero; try less tension"
-    return f"no equilibrium found {at} in {point.iterations} iterations; try a ramp from a lower tension"
 
 
 def _settled_on(
@@ -206,7 +208,9 @@ def _motion(
     started = time.perf_counter()
     start = statics.solve(scenario.initial_tension)
     if not start.found:
-        return Run(scenario, start.outcome, _why(start), [start], solve_time=time.perf_counter() - started)
+        limit = _limit(statics, start, scenario.initial_tension, None)
+        solve_time = time.perf_counter() - started
+        return Run(scenario, start.outcome, why(start, None, limit), [start], solve_time=solve_time)
     y = dynamics.state(start.coordinates)
     solver = _settled_on(scenario, study, dynamics, y, stretches)
     warm_up(dynamics, solver, stretches[0])
@@ -219,7 +223,7 @@ def _motion(
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end = statics.solve(last, start.coordinates, start)
-    path = statics.ramp(moved.trajectory.inputs, start.coordinates) if study.static_path else []
+    path = ramp(statics, moved.trajectory.inputs, start.coordinates) if study.static_path else []
     solve_time = time.perf_counter() - started
     ends, growths = [start, end], [None, None]
     if why_not_judged(scenario.scene) is None:
@@ -289,7 +293,7 @@ def _compared(run: Run, study: MotionStudy, ends: Sequence[Equilibrium], growth:
     if not isinstance(study, StepResponseStudy):
         return replace(run, static_gap=gap)
     if gap is None or end.outcome is not Outcome.COMPLETED:
-        return replace(run, static_gap=gap, outcome=end.outcome, message=_why(end, growth))
+        return replace(run, static_gap=gap, outcome=end.outcome, message=why(end, growth))
     speed = float(run.trajectory.tip_speed[-1])
     verdict = Outcome.SETTLED if settled(gap, speed, run.scenario.settled_within) else Outcome.NOT_SETTLED
     return replace(run, static_gap=gap, outcome=verdict)

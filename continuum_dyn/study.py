@@ -9,6 +9,7 @@ from pydantic.dataclasses import dataclass
 
 from continuum_dyn.profiles import Constant, InPieces, Profile, lowest
 from continuum_dyn.smooth_motion import Rate, check_smooth
+from statics.arc_length import check_followable
 from statics.checked import STRICT, Positive
 from statics.effects import Effect
 from statics.errors import InputError
@@ -27,8 +28,13 @@ class EquilibriumStudy:
 
 @dataclass(frozen=True, config=STRICT)
 class RampStudy:
-    """Where the arm rests under one set of tensions after another."""
+    """Where the arm rests under one set of tensions and load factors after another.
 
+    Along the ``path`` "stable" each is a stable equilibrium, searched from the one before; "arc_length"
+    follows the path of equilibria from the first one through its folds, stable or not.
+    """
+
+    path: Literal["stable", "arc_length"] = "stable"
     kind: Literal["ramp"] = "ramp"
 
 
@@ -129,8 +135,8 @@ class Scenario:
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
     ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
     program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. ``load_factors``
-    has a profile for each driven load, ``base_motion`` those of x, y (m) and angle (rad) of a base that
-    moves. Raises ``InputError`` where these do not fit.
+    has likewise a profile or a list for each driven load, ``base_motion`` profiles of x, y (m) and angle
+    (rad) of a base that moves. Raises ``InputError`` where these do not fit.
     """
 
     scene: Scene
@@ -139,7 +145,7 @@ class Scenario:
     solver: Solver = dataclasses.field(default_factory=Solver)
     accuracy: Accuracy | None = None
     chooses_mesh: bool = False
-    load_factors: tuple[Profile, ...] = ()
+    load_factors: tuple[Profile, ...] | tuple[tuple[float, ...], ...] = ()
     base_motion: tuple[Profile, ...] = ()
     title: str = ""
     text: str = ""
@@ -171,12 +177,13 @@ class Scenario:
         if isinstance(self.study, MotionStudy):
             self._check_motion(self.study)
         elif isinstance(self.study, RampStudy):
-            if not all(isinstance(factor, Constant) for factor in self.load_factors):
-                raise InputError('a "ramp" study takes one number for each load factor.')
+            if self.study.path == "arc_length":
+                check_followable(self.scene)
             if len({len(values) for values in self.ramps}) > 1:
                 counts = ", ".join(str(len(values)) for values in self.ramps)
                 raise InputError(
-                    f"tensions of a ramp must be lists of equal length; they have {counts} entries."
+                    f"tensions and load factors of a ramp must be lists of equal length; they have {counts} "
+                    "entries."
                 )
         elif not all(isinstance(profile, Constant) for profile in self.profiles):
             raise InputError('an "equilibrium" study takes one number for each tension and load factor.')
@@ -240,17 +247,20 @@ class Scenario:
     @property
     def profiles(self) -> tuple[InPieces, ...]:
         """What drives a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
-        profiles = tuple(p for p in self.tension if not isinstance(p, tuple))
-        if len(profiles) != len(self.tension):
-            raise InputError(f'lists of tensions belong to a "ramp" study; this is "{self.study.kind}".')
+        driven = (*self.tension, *self.load_factors)
+        profiles = tuple(p for p in driven if not isinstance(p, tuple))
+        if len(profiles) != len(driven):
+            raise InputError(
+                f'lists of tensions or load factors belong to a "ramp" study; this is "{self.study.kind}".'
+            )
         return (*profiles, *self._others(profiles))
 
     def _others(self, drives: tuple[Any, ...]) -> tuple[InPieces, ...]:
-        """What drives a motion beside its cables, and the rates of those that are driven by length."""
+        """What drives a motion beside cables and loads, and the rates of cables that are driven by length."""
         pose, motion = self._of_base
         drawn_in = (drives[number] for number in self.scene.driven_by_length)
         rates = (Constant(0.0) if isinstance(drive, tuple) else Rate(drive) for drive in drawn_in)
-        return (*self.load_factors, *pose, *rates, *motion)
+        return (*pose, *rates, *motion)
 
     @property
     def _of_base(self) -> tuple[tuple[InPieces, ...], tuple[InPieces, ...]]:
@@ -263,10 +273,11 @@ class Scenario:
 
     @property
     def ramps(self) -> tuple[tuple[float, ...], ...]:
-        """The lists of a ramp study."""
-        lists = tuple(values for values in self.tension if isinstance(values, tuple))
-        if len(lists) != len(self.tension):
-            raise InputError('a "ramp" study takes lists of tensions, or numbers.')
+        """The lists of a ramp study: of tensions, and then of load factors."""
+        driven = (*self.tension, *self.load_factors)
+        lists = tuple(values for values in driven if isinstance(values, tuple))
+        if len(lists) != len(driven):
+            raise InputError('a "ramp" study takes lists of tensions and load factors, or numbers.')
         return lists
 
     def with_mesh(self, subsegments: int, tip: float) -> "Scenario":
@@ -298,5 +309,6 @@ class Scenario:
     @property
     def initial_tension(self) -> np.ndarray:
         """Inputs of the equilibrium that a study starts from, in the order of ``Scene.inputs``."""
-        given = (*self.tension, *self._others(self.tension))
+        driven = (*self.tension, *self.load_factors)
+        given = (*driven, *self._others(driven))
         return np.array([t[0] if isinstance(t, tuple) else t.initial for t in given], dtype=float)

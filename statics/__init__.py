@@ -1,11 +1,13 @@
 """Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
 
+from statics.arc_length import Path, follow_path
 from statics.arm import RONE2012_HOLE_OFFSET, Arm, Base, Cable, Each, Payload
 from statics.effects import Bending, CableFriction, Cables, DiskLoad, DiskLoads, Extension, Gravity
 from statics.effects.cables import disk_loads
-from statics.equilibria import Equilibrium, StaticSolver, equilibrium, tension_ramp
+from statics.equilibria import Critical, Equilibrium, StaticSolver, equilibrium
 from statics.errors import ContinuumError, InputError
 from statics.outcome import Outcome
+from statics.ramp import tension_ramp
 from statics.scene import Scene
 
 __all__ = [
@@ -17,6 +19,7 @@ __all__ = [
     "CableFriction",
     "Cables",
     "ContinuumError",
+    "Critical",
     "DiskLoad",
     "DiskLoads",
     "Each",
@@ -25,10 +28,12 @@ __all__ = [
     "Gravity",
     "InputError",
     "Outcome",
+    "Path",
     "Payload",
     "Scene",
     "StaticSolver",
     "disk_loads",
     "equilibrium",
+    "follow_path",
     "tension_ramp",
 ]

@@ -1,11 +1,10 @@
-"""Equilibria of a scene, and ramps of them.
+"""Equilibria of a scene, one at a time.
 
 What is returned as an equilibrium is one: residual at rounding level. Where there is none, or where it is
 not stable, the outcome says so. Under loads without a potential statics alone cannot tell whether it is.
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any
 
@@ -32,6 +31,14 @@ _OUTCOMES = {
 }
 
 
+class Critical(IntEnum):
+    """What becomes of a path of equilibria where one of them is about to lose or to gain stability."""
+
+    NO = 0
+    FOLD = 1
+    BRANCHING = 2
+
+
 @dataclass(frozen=True)
 class Equilibrium:
     """An arm at rest under ``tension``, or the search for it where ``found`` is False.
@@ -42,6 +49,9 @@ class Equilibrium:
     motion; ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
     it is not known: under loads without a potential, until the modes of small motion have been asked.
+    ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
+    ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from
+    the equilibrium before left the stable ones, if this one does not continue it.
     """
 
     outcome: Outcome
@@ -64,6 +74,9 @@ class Equilibrium:
     base_x: float | None = None
     base_y: float | None = None
     base_theta: float | None = None
+    left: tuple["Equilibrium", ...] = ()
+    critical: Critical = Critical.NO
+    lost_at: "Equilibrium | None" = None
 
     @property
     def found(self) -> bool:
@@ -76,6 +89,21 @@ class Equilibrium:
         if self.found and self.unstable_directions is None:
             return None
         return self.outcome is Outcome.COMPLETED
+
+    @property
+    def jumped(self) -> bool:
+        """Whether this equilibrium of a ramp does not continue the one before."""
+        return self.lost_at is not None
+
+    @property
+    def drive(self) -> str:
+        """What it is under, in words: tensions and load factors."""
+        parts = []
+        if self.tension.size:
+            parts.append(f"tension {', '.join(f'{tau:g}' for tau in self.tension)} N")
+        if self.load_factor is not None:
+            parts.append(f"load factor {', '.join(f'{factor:g}' for factor in self.load_factor)}")
+        return f"at {' and '.join(parts)}" if parts else "without cables"
 
     @property
     def tip(self) -> tuple[float, float, float]:
@@ -134,15 +162,29 @@ class StaticSolver:
         ``inputs`` are the scene's, ``Scene.inputs``; those of a base's motion play no part. ``before`` is
         where the arm comes from, or which way its cables last slipped: only friction asks for it.
         """
-        arm = self.scene.arm
+        arm, left = self.scene.arm, list[Equilibrium]()
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
         ended, iterations = search.NOT_FOUND, 0
         for slip_part in self._remember(before):
             self._set("slip_length", np.full(arm.segments, slip_part * arm.total_length))
-            ended, more = self.kernel.find_equilibrium(
-                q, inputs, self.segments, self.disks, arm.rest_length, MAX_ITERATIONS
-            )
+            ended, more = self._find(q, inputs, MAX_ITERATIONS)
             iterations += more
+            while ended == search.UNSTABLE and iterations < MAX_ITERATIONS:
+                left.append(self.examine(q, inputs, ended, iterations))
+                if not self.kernel.leave_saddle(q, inputs, self.segments, self.disks, arm.rest_length):
+                    return left.pop()
+                ended, more = self._find(q, inputs, MAX_ITERATIONS - iterations)
+                iterations += more
+        return replace(self.examine(q, inputs, ended, iterations), left=tuple(left))
+
+    def _find(self, q: np.ndarray, inputs: np.ndarray, most: int) -> tuple[int, int]:
+        """Move q to an equilibrium; returns how the search ended, and its iterations."""
+        numbers = (inputs, self.segments, self.disks, self.scene.arm.rest_length)
+        return self.kernel.find_equilibrium(q, *numbers, most)
+
+    def examine(self, q: np.ndarray, inputs: np.ndarray, ended: int, iterations: int = 0) -> Equilibrium:
+        """All that is told of coordinates, shape (segments, dofs), at which a search has ``ended``."""
+        arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         elastic, gravity, residual, negative = self.kernel.examine(q, inputs, self.segments, self.disks, pose)
         elongation = q[:, 1] if q.shape[1] == 2 else None
@@ -184,16 +226,6 @@ class StaticSolver:
             if known == name or known.rpartition("_")[0] == name:
                 self.segments[:, column] = values
 
-    def ramp(self, tensions: Iterable[np.ndarray], start: np.ndarray | None = None) -> list[Equilibrium]:
-        """An equilibrium for each set of inputs, each from the last one that was found."""
-        points: list[Equilibrium] = []
-        before: Equilibrium | Slip = Slip.DRAWN_IN
-        for inputs in tensions:
-            points.append(self.solve(inputs, start, before))
-            if points[-1].found:
-                start, before = points[-1].coordinates, points[-1]
-        return points
-
     def branches(self, inputs: np.ndarray, near: Equilibrium) -> list[Equilibrium]:
         """Equilibria between which cables that rub may leave the arm, searched from one; else that one."""
         if not any(kind.rubs for kind in self.scene.cable_kinds):
@@ -227,13 +259,3 @@ def equilibrium(
     """
     values = scene.check_tension(tension)
     return StaticSolver(scene).solve(values, None if start is None else start.coordinates, before)
-
-
-def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
-    """Equilibria under one set of tensions after another, each found from the one before it.
-
-    Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
-    starts from the last one that was. With friction the first is that of cables drawn in, and every other
-    remembers the one before it. Raises ``InputError`` for tensions that do not fit.
-    """
-    return StaticSolver(scene).ramp([scene.check_tension(tension) for tension in tensions])

@@ -1,8 +1,8 @@
 """Newton's method on the chain that ends in a stable equilibrium: plain Python, composed into kernels.
 
 The potential energy must fall (Armijo); pivot blocks are made positive as they come, so that every step
-descends; at a saddle the way out is the direction of negative curvature that the elimination knows. A
-trial beyond a geometric limit counts as infinitely high.
+descends. At a saddle the search stops, so that it can be told, and goes on along the direction of negative
+curvature that the elimination knows. A trial beyond a geometric limit counts as infinitely high.
 """
 
 import math
@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 
 ROUNDING = 1e-11
 """A predicted fall of the potential below this part of its scale cannot be seen in it."""
+FAR_FROM_REST = 1e-6
+"""A Newton step above this (rad, or elongation over L0) from where all forces balance goes elsewhere: the
+matrix is singular there."""
 
 
 def pose_sweep(
@@ -171,12 +174,41 @@ def lengthen(
     return pose_sweep(trial, inputs, segments, disks, chain)
 
 
+def leave_saddle(
+    q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, disks: np.ndarray, unit: float
+) -> bool:
+    """Move ``q`` off an unstable equilibrium, down along a direction of negative curvature.
+
+    Returns whether there is a way down within the geometric limits.
+    """
+    chain = np.empty((q.shape[0], CHAIN_COLUMNS))
+    residual, descent = np.empty_like(q), np.empty_like(q)
+    change, trial = np.empty_like(q), np.empty_like(q)
+    pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
+    potential = pose_sweep(q, inputs, segments, disks, chain)[0]
+    residual_sweep(disks, chain, residual)
+    descend(segments, disks, chain, residual, descent, pivots)
+    curvature = saddle_direction(unit, chain, pivots, descent, change)
+    slope = inner(residual, change)
+    if slope > 0.0:
+        advance(change, -2.0, change, change)
+        slope = -slope
+    promised = (potential, slope, curvature)
+    factor, seen = shorten(q, change, 1.0, promised, inputs, segments, disks, chain, trial)
+    if factor == 0.0:
+        return False
+    lengthen(q, change, factor, 10.0 * LARGEST_TURN, seen, inputs, segments, disks, chain, trial)
+    q[:] = trial
+    return True
+
+
 def find_equilibrium(
     q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, disks: np.ndarray, unit: float, most: int
 ) -> tuple[int, int]:
     """Move ``q``, shape (n, dofs), to an equilibrium; ``unit`` is the length elongations compare with.
 
-    Returns how it ended (STABLE, UNSTABLE, LIMIT, NOT_FOUND) and the iterations (at most ``most``).
+    Returns how it ended (STABLE, UNSTABLE, LIMIT, NOT_FOUND) and the iterations (at most ``most``). From an
+    unstable one ``leave_saddle`` knows the way on.
     """
     chain = np.empty((q.shape[0], CHAIN_COLUMNS))
     residual, descent = np.empty_like(q), np.empty_like(q)
@@ -188,25 +220,23 @@ def find_equilibrium(
         negative = descend(segments, disks, chain, residual, descent, pivots)
         substitute_sweep(chain, descent, change)
         single, turn = measure(change, unit)
-        slope, curvature = inner(residual, change), 0.0
-        if single < AT_REST and negative == 0:
-            advance(q, 1.0, change, q)
-            return STABLE, iteration
         if single < AT_REST:
-            curvature = saddle_direction(unit, chain, pivots, descent, change)
-            slope = inner(residual, change)
-            if slope > 0.0:
-                advance(change, -2.0, change, change)
-                slope = -slope
-            turn = 0.1
-        fall_from = potential
-        if curvature == 0.0 and slope > -ROUNDING * scale:
+            if negative == 0:
+                advance(q, 1.0, change, q)
+                return STABLE, iteration
+            eliminate_exactly(segments, disks, chain, residual, descent, pivots)
+            substitute_sweep(chain, descent, change)
+            if measure(change, unit)[0] < FAR_FROM_REST:
+                advance(q, 1.0, change, q)
+            return UNSTABLE, iteration
+        slope, fall_from = inner(residual, change), potential
+        if slope > -ROUNDING * scale:
             fall_from = potential + scale  # the fall is below rounding: only the limits are checked
         factor, seen = shorten(
             q,
             change,
             min(1.0, LARGEST_TURN / max(turn, 1e-30)),
-            (fall_from, slope, curvature),
+            (fall_from, slope, 0.0),
             inputs,
             segments,
             disks,
@@ -214,7 +244,7 @@ def find_equilibrium(
             trial,
         )
         if factor == 0.0:
-            return (UNSTABLE if curvature < 0.0 else NOT_FOUND), iteration
+            return NOT_FOUND, iteration
         if negative > 0:
             largest = max(LARGEST_TURN / max(turn, 1e-30), 1.0)
             seen = lengthen(q, change, factor, largest, seen, inputs, segments, disks, chain, trial)

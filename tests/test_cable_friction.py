@@ -12,6 +12,7 @@ from whole_cables import WholeCables
 from continuum_dyn import load_scenario, simulate
 from statics import Arm, Bending, Cable, CableFriction, Cables, Extension, Gravity, InputError, Scene, codegen
 from statics.equilibria import Equilibrium, Slip, StaticSolver
+from statics.ramp import ramp
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 FRICTION = 0.3
@@ -66,7 +67,7 @@ def test_branches_balance_the_forces_of_the_whole_arm(slip: Slip) -> None:
 def test_ramp_up_and_down_goes_from_one_branch_to_the_other() -> None:
     solver = solver_of(rubbing())
     tensions = np.concatenate([np.linspace(0.0, 2.0, 9), np.linspace(2.0, 0.0, 9)[1:]])
-    points = solver.ramp(tensions[:, None])
+    points = ramp(solver, tensions[:, None])
     for tension, point in zip(tensions[2:9], points[2:9], strict=True):
         drawn_in = solver.solve(np.array([tension]), before=Slip.DRAWN_IN)
         assert point.tip == pytest.approx(drawn_in.tip, abs=1e-9)
@@ -80,7 +81,7 @@ def test_cable_sticks_where_the_ramp_turns_back() -> None:
     """Lowering the tension by a hundredth moves the arm by less than a tenth of what it would."""
     moved = []
     for friction in (FRICTION, 1e-9):
-        points = solver_of(rubbing(friction)).ramp(np.array([[1.0], [2.0], [1.98]]))
+        points = ramp(solver_of(rubbing(friction)), np.array([[1.0], [2.0], [1.98]]))
         moved.append(points[1].tip[1] - points[2].tip[1])
     assert 0.0 <= moved[0] < 0.1 * moved[1]
 
@@ -90,7 +91,7 @@ def test_work_around_the_loop_is_what_friction_takes() -> None:
     tensions = np.concatenate([np.linspace(0.0, 2.0, 41), np.linspace(2.0, 0.0, 41)[1:]])
     work = []
     for friction in (1e-9, 0.01, 0.02):
-        points = solver_of(rubbing(friction)).ramp(tensions[:, None])
+        points = ramp(solver_of(rubbing(friction)), tensions[:, None])
         displacement = np.array([point.cable_displacement[0] for point in points])
         work.append(trapezoid(tensions, displacement))
     assert abs(work[0]) < 1e-9 * trapezoid(tensions[:41], np.linspace(0, 1e-3, 41))

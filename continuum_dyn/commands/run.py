@@ -16,9 +16,12 @@ from statics.errors import InputError
 if TYPE_CHECKING:
     from continuum_dyn.simulation import Run
     from continuum_dyn.study import Scenario
+    from statics.equilibria import Equilibrium
 
 MAX_ROWS = 20
 """Most rows of a ramp that are printed."""
+MARKS = ("", "fold", "branching")
+"""What the table of a ramp calls ``Critical``."""
 STABLE = {True: "yes", False: "no", None: "unknown"}
 BAR_INTERVAL = 0.1
 """Shortest time between two updates of the progress bar, s."""
@@ -103,7 +106,13 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
         record |= result.trajectory.counters
     else:
         record["equilibria"] = [
-            {"tension": point.tension.tolist(), "tip": point.tip, "stable": point.stable}
+            {
+                "tension": point.tension.tolist(),
+                "tip": point.tip,
+                "stable": point.stable,
+                "critical": point.critical.name.lower(),
+                "jumped": point.jumped,
+            }
             for point in result.equilibria
             if point.found
         ]
@@ -204,14 +213,25 @@ def _ramp_table(result: "Run", points: list[Any]) -> Any:
     table = Table(box=None, pad_edge=False, header_style="dim")
     for name in result.scenario.scene.arm.cable_names:
         table.add_column(f"{name} (N)", justify="right")
-    for name in ("tip x (mm)", "tip y (mm)", "theta (rad)", "stable"):
+    for number in range(1, result.scenario.scene.driven_loads + 1):
+        table.add_column(f"load factor {number}", justify="right")
+    for name in ("tip x (mm)", "tip y (mm)", "theta (rad)", "stable", ""):
         table.add_column(name, justify="right")
     stride = -(-len(points) // MAX_ROWS)
-    for point in points[::stride]:
+    for number, point in enumerate(points):
+        told = "jumped" if point.jumped else MARKS[point.critical]
+        if number % stride and not told:
+            continue
         x, y, theta = point.tip
-        tensions = (f"{tau:g}" for tau in point.tension)
-        table.add_row(*tensions, f"{x * 1e3:.4f}", f"{y * 1e3:.4f}", f"{theta:.5f}", STABLE[point.stable])
+        drives = (f"{value:g}" for value in _drives(point))
+        pose = f"{x * 1e3:.4f}", f"{y * 1e3:.4f}", f"{theta:.5f}"
+        table.add_row(*drives, *pose, STABLE[point.stable], told)
     return table
+
+
+def _drives(point: "Equilibrium") -> list[float]:
+    """Tensions, and load factors if any."""
+    return [*point.tension, *(() if point.load_factor is None else point.load_factor)]
 
 
 def _pose(tip: tuple[float, float, float]) -> str:

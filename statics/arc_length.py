@@ -1,0 +1,336 @@
+"""Paths of equilibria by arc length: they are followed through folds, where a load cannot grow any further.
+
+Along a ramp of inputs both the coordinates q and the place on the ramp are unknown, and the step is given as
+a length along the path (Riks 1979; Crisfield 1981; Keller 1977):
+
+    r(q, place) = 0      t . (q - q0, place - place0) = length
+
+with t the path's unit tangent. The bordered system takes two solutions with the elimination along the chain,
+for -r and for -dr/dplace, so a step costs O(n). Where the tangent turns back the path folds; where the number
+of unstable directions changes and it does not, another path branches off.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from statics import search
+from statics.equilibria import Critical, Equilibrium, StaticSolver
+from statics.errors import InputError
+from statics.outcome import Outcome
+from statics.scene import Scene
+
+FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.05, 0.25, 1e-9
+"""Lengths of steps along the path: rad, and points of the ramp."""
+MOST_STEPS = 10_000
+MOST_CORRECTIONS = 10
+EASY = 4
+"""Corrections up to which the next step is longer."""
+LEAST_COSINE = 0.95
+"""Of the angle between two tangents in a row; below it the step is tried again at half its length."""
+HALF_DIFFERENCE = 0.5
+"""Of places on the ramp, for the residual's derivative by the place: it is linear in tensions and factors."""
+NEAR_LIMIT = 1e-3
+"""Clearance below which a path that cannot be followed any further has come to a geometric limit."""
+JUST_BEFORE = 1e-9
+"""On the ramp: there the stretch before one of its points counts."""
+LOCATED = 1e-13
+"""Of a step's length, within which folds, limits and points of the ramp are located."""
+BRANCHING_LOCATED = 1e-6
+"""Likewise branchings: there the matrix is singular, and has no tangent for what is closer."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """Equilibria along a path: those at the ramp's points, folds and branchings, in the order of the path.
+
+    ``outcome`` says how it ended: ``completed`` at the ramp's last point, ``geometry_limit``, or
+    ``no_equilibrium`` where it turns back beyond the ramp's first point or cannot be followed any further;
+    ``end`` is where that was, and ``places`` are those on the ramp of its points, counted from 0.
+    """
+
+    outcome: Outcome
+    points: list[Equilibrium]
+    places: list[float]
+    end: Equilibrium
+    message: str = ""
+
+    @property
+    def critical(self) -> list[Equilibrium]:
+        """The folds and branchings."""
+        return [point for point in self.points if point.critical]
+
+
+def follow_path(
+    scene: Scene, tensions: Sequence[object], start: Equilibrium | None = None, *, steps: int = MOST_STEPS
+) -> Path:
+    """The path of equilibria along a ramp of tensions through all its folds.
+
+    Each of ``tensions`` is what ``equilibrium`` takes. The path begins at the equilibrium that a search finds
+    from ``start``, or from straight, and takes at most so many ``steps``. Raises ``InputError`` for tensions
+    that do not fit, and for scenes without a potential.
+    """
+    solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
+    return follow(solver, ramp, None if start is None else start.coordinates, steps)
+
+
+def follow(
+    solver: StaticSolver, ramp: np.ndarray, start: np.ndarray | None = None, steps: int = MOST_STEPS
+) -> Path:
+    """Likewise for inputs, shape (points, inputs), and a start's coordinates."""
+    check_followable(solver.scene)
+    first = solver.solve(ramp[0], start)
+    if not first.found or len(ramp) == 1:
+        return Path(first.outcome, [first] if first.found else [], [0.0], first)
+    return ArcLength(solver, ramp).follow(first, steps)
+
+
+def hindrances(scene: Scene) -> list[str]:
+    """What keeps a scene's paths from being followed: stability is not known, or depends on the way back."""
+    friction = ["friction"] if any(kind.rubs for kind in scene.cable_kinds) else []
+    return [*scene.without_potential, *friction]
+
+
+def check_followable(scene: Scene) -> None:
+    """Raises ``InputError`` for scenes whose paths cannot be followed by arc length."""
+    if hindrances(scene):
+        raise InputError(
+            f"a path by arc length needs a potential, which {' and '.join(hindrances(scene))} does not have. "
+            'Take path = "stable".'
+        )
+
+
+class _Place(NamedTuple):
+    """A point of the path: coordinates, place on the ramp, unit tangent, and what the elimination says."""
+
+    q: np.ndarray
+    place: float
+    along: np.ndarray
+    along_place: float
+    negative: int
+    clearance: float
+    corrections: int = 0
+
+
+class ArcLength:
+    """The bordered systems of one scene along one ramp of inputs, shape (points, inputs)."""
+
+    def __init__(self, solver: StaticSolver, ramp: np.ndarray) -> None:
+        self.solver, self.kernel, self.ramp = solver, solver.kernel, ramp
+        segments, dofs = solver.scene.arm.segments, len(solver.scene.coordinates)
+        self.chain = np.empty((segments, self.kernel.CHAIN_COLUMNS))
+        self.pivots = np.empty((segments, self.kernel.PIVOT_COLUMNS))
+        units = np.array([1.0, solver.scene.arm.rest_length])[:dofs]
+        self.weight = segments / units**2
+        """So that a uniform bend of the whole arm counts as its angle, whatever the number of segments."""
+
+    def inputs(self, place: float) -> np.ndarray:
+        """Inputs at a place on the ramp, linear from one of its points to the next and beyond its ends."""
+        point = min(max(int(place), 0), len(self.ramp) - 2)
+        return self.ramp[point] + (place - point) * (self.ramp[point + 1] - self.ramp[point])
+
+    def residual(self, q: np.ndarray, inputs: np.ndarray) -> tuple[np.ndarray, float]:
+        """Unbalanced generalized forces, shape of q, and the clearance."""
+        solver, residual = self.solver, np.empty_like(q)
+        clearance = self.kernel.pose_sweep(q, inputs, solver.segments, solver.disks, self.chain)[2]
+        self.kernel.residual_sweep(solver.disks, self.chain, residual)
+        return residual, clearance
+
+    def by_place(self, q: np.ndarray, place: float) -> np.ndarray:
+        """Derivative of the residual by the place on the ramp."""
+        point = min(max(int(place), 0), len(self.ramp) - 2)
+        way = self.ramp[point + 1] - self.ramp[point]
+        ahead, behind = (self.inputs(place) + sign * HALF_DIFFERENCE * way for sign in (1, -1))
+        return (self.residual(q, ahead)[0] - self.residual(q, behind)[0]) / (2 * HALF_DIFFERENCE)
+
+    def solve(self, right: np.ndarray) -> tuple[np.ndarray, int]:
+        """-H^-1 right, for the q of the last ``residual``; and the number of H's negative eigenvalues."""
+        solver, descent, change = self.solver, np.empty_like(right), np.empty_like(right)
+        numbers = (solver.segments, solver.disks, self.chain, right, descent, self.pivots)
+        negative = self.kernel.eliminate_exactly(*numbers)
+        self.kernel.substitute_sweep(self.chain, descent, change)
+        return change, negative
+
+    def tangent_at(
+        self, q: np.ndarray, place: float, backwards: bool = False
+    ) -> tuple[np.ndarray, int, float]:
+        """dq/dplace along the path, the number of unstable directions, and the clearance.
+
+        At one of the ramp's points it is that of the stretch ahead, or behind if the path goes backwards.
+        """
+        by_place = self.by_place(q, place - JUST_BEFORE if backwards else place)
+        clearance = self.residual(q, self.inputs(place))[1]
+        return *self.solve(by_place), clearance
+
+    def place_at(
+        self, q: np.ndarray, place: float, towards: tuple[np.ndarray, float], corrections: int = 0
+    ) -> _Place:
+        """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
+        by_place, negative, clearance = self.tangent_at(q, place, backwards=towards[1] < 0.0)
+        length = np.sqrt(self.inner(by_place, by_place) + 1.0)
+        ahead = self.inner(by_place, towards[0]) + towards[1] >= 0.0
+        length = length if ahead else -length
+        return _Place(q, place, by_place / length, 1.0 / length, negative, clearance, corrections)
+
+    def inner(self, one: np.ndarray, other: np.ndarray) -> float:
+        """Scalar product of two changes of coordinates, in rad^2."""
+        return float(np.sum(self.weight * one * other))
+
+    def corrected(self, here: _Place, length: float) -> _Place | None:
+        """The point of the path that far along its tangent, by Newton's method; None if it is not found."""
+        q, place = here.q + length * here.along, here.place + length * here.along_place
+        for correction in range(1, MOST_CORRECTIONS + 1):
+            by_place = self.by_place(q, place)
+            residual, _ = self.residual(q, self.inputs(place))
+            change, _ = self.solve(residual)
+            turning, _ = self.solve(by_place)
+            lacking = length - self.inner(here.along, q - here.q)
+            lacking -= here.along_place * (place - here.place) + self.inner(here.along, change)
+            step = lacking / (self.inner(here.along, turning) + here.along_place)
+            change += step * turning
+            size = np.abs(change * np.sqrt(self.weight)).max() + abs(step)
+            if not size < 10.0 * max(length, SHORTEST_STEP):
+                return None
+            q, place = q + change, place + step
+            if size < search.AT_REST:
+                return self.place_at(q, place, (here.along, here.along_place), correction)
+        return None
+
+    def at_point(self, near: _Place, point: float) -> _Place:
+        """The equilibrium at exactly a point of the ramp, from one within rounding of it; goes on."""
+        residual, _ = self.residual(near.q, self.inputs(point))
+        q = near.q + self.solve(residual)[0]
+        return self.place_at(q, point, (0.0 * q, near.along_place))
+
+    def located(
+        self, here: _Place, there: float, value: Callable[[_Place], float], within: float = LOCATED
+    ) -> tuple[_Place, float] | None:
+        """Where, up to ``there`` along the tangent, a value changes its sign, and how far; None if lost."""
+        found: dict[float, _Place] = {0.0: here}
+
+        def value_at(length: float) -> float:
+            if length not in found:
+                point = self.corrected(here, length)
+                if point is None:
+                    raise _LostError
+                found[length] = point
+            return value(found[length])
+
+        try:
+            length = float(brentq(value_at, 0.0, there, xtol=within * there, rtol=8.9e-16))  # pyright: ignore[reportArgumentType]
+        except _LostError:
+            return None
+        return found[length], length
+
+    def follow(self, first: Equilibrium, steps: int = MOST_STEPS, *, until_critical: bool = False) -> Path:
+        """The path from an equilibrium at the ramp's first point to its last, or to a fold or branching."""
+        return _Follower(self, first).follow(steps, until_critical)
+
+
+class _LostError(Exception):
+    """A point between two of the path is not found: the step was too long."""
+
+
+class _Follower:
+    """One walk along a path."""
+
+    def __init__(self, arc: ArcLength, first: Equilibrium) -> None:
+        self.arc, self.length, self.forwards = arc, FIRST_STEP, True
+        self.here = arc.place_at(first.coordinates, 0.0, (0.0 * first.coordinates, 1.0))
+        self.points, self.places = [first], [0.0]
+
+    def follow(self, steps: int, until_critical: bool) -> Path:
+        last = len(self.arc.ramp) - 1
+        for _ in range(steps):
+            stepped = self._step()
+            if stepped is None:
+                return self._lost()
+            self.here, critical, at_limit = stepped
+            if at_limit:
+                return self._ended(Outcome.GEOMETRY_LIMIT)
+            if critical or self.here.place in range(last + 1):
+                self._keep(critical)
+            if critical and until_critical:
+                return Path(Outcome.COMPLETED, self.points, self.places, self.points[-1])
+            if not critical and self.here.place == last:
+                return self._ended(Outcome.COMPLETED)
+            if self.here.place <= 0.0 and not self.forwards:
+                return self._ended(Outcome.NO_EQUILIBRIUM, "it turns back beyond the ramp's first point")
+        return self._ended(Outcome.NO_EQUILIBRIUM, f"it takes more than {steps} steps")
+
+    def _step(self) -> tuple[_Place, Critical, bool] | None:
+        """The next point of the path: a step on, or what comes first on its way; None if there is none."""
+        while self.length > SHORTEST_STEP:
+            length, there = self.length, self.arc.corrected(self.here, self.length)
+            if there is not None and self._is_smooth(there):
+                if there.corrections <= EASY:
+                    self.length = min(1.5 * self.length, LONGEST_STEP)
+                stepped = self._cut(there, length)
+                if stepped is not None:
+                    return stepped
+            self.length = 0.5 * min(length, self.length)
+        return None
+
+    def _is_smooth(self, there: _Place) -> bool:
+        """Whether the path turns little on the way; at the ramp's points it may have corners."""
+        here = self.here
+        cosine = self.arc.inner(here.along, there.along) + here.along_place * there.along_place
+        return cosine >= LEAST_COSINE or _point_between(here.place, there.place) is not None
+
+    def _cut(self, there: _Place, length: float) -> tuple[_Place, Critical, bool] | None:
+        """A step up to the first of what it passes: a limit, a point of the ramp, a fold, a branching."""
+        arc, here = self.arc, self.here
+        if there.clearance < search.AT_LIMIT:
+            cut = arc.located(here, length, lambda at: at.clearance - search.AT_LIMIT)
+            return None if cut is None else (cut[0], Critical.NO, True)
+        point = _point_between(here.place, there.place)
+        if point is not None:
+            cut = arc.located(here, length, lambda at: at.place - point)
+            if cut is None:
+                return None
+            there, length = arc.at_point(cut[0], point), cut[1]
+        before, beyond = here.negative, there.negative
+        if (there.along_place > 0.0) != self.forwards:
+            cut, critical = arc.located(here, length, lambda at: at.along_place), Critical.FOLD
+        elif before != beyond:
+            middle, critical = 0.5 * (before + beyond), Critical.BRANCHING
+            cut = arc.located(here, length, lambda at: at.negative - middle, BRANCHING_LOCATED)
+        else:
+            return there, Critical.NO, False
+        return None if cut is None else (cut[0]._replace(negative=beyond), critical, False)
+
+    def _keep(self, critical: Critical) -> None:
+        here, before = self.here, self.points[-1]
+        found = self._equilibrium()
+        if critical is Critical.FOLD:
+            self.forwards = not self.forwards
+        if critical:
+            fewest = min(here.negative, before.unstable_directions or 0)
+            found = replace(found, outcome=Outcome.UNSTABLE_EQUILIBRIUM, unstable_directions=fewest)
+        self.points.append(replace(found, critical=critical))
+        self.places.append(here.place)
+
+    def _equilibrium(self) -> Equilibrium:
+        here, arc = self.here, self.arc
+        ended = search.UNSTABLE if here.negative else search.STABLE
+        return arc.solver.examine(here.q, arc.inputs(here.place), ended)
+
+    def _lost(self) -> Path:
+        if self.here.clearance < NEAR_LIMIT:
+            return self._ended(Outcome.GEOMETRY_LIMIT)
+        return self._ended(Outcome.NO_EQUILIBRIUM, "it cannot be followed any further")
+
+    def _ended(self, outcome: Outcome, message: str = "") -> Path:
+        return Path(outcome, self.points, self.places, self._equilibrium(), message)
+
+
+def _point_between(place: float, other: float) -> float | None:
+    """The ramp's point strictly between two places on it that comes first on the way; None without one."""
+    if other > place:
+        point = float(np.floor(place)) + 1.0
+        return point if point < other else None
+    point = float(np.ceil(place)) - 1.0
+    return point if point > other else None

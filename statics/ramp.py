@@ -1,0 +1,93 @@
+"""Ramps: a stable equilibrium for one set of inputs after another, none of which jumps without saying so.
+
+From one point of a ramp to the next the path of equilibria is continued. A cheap look at its slopes at both
+ends is enough where the two lie on one smooth path; elsewhere it is followed by arc length.
+"""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from statics.arc_length import ArcLength, hindrances
+from statics.equilibria import Equilibrium, Slip, StaticSolver
+from statics.outcome import Outcome
+from statics.scene import Scene
+
+SMOOTH = 0.25
+"""Difference of a path's slopes at two points from the way between them, over it: no closer look below."""
+SAME = 1e-6
+"""Root of the summed squares of the changes of bend angle, rad, below which two equilibria are the same."""
+
+
+def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
+    """Equilibria under one set of tensions after another, each found from the one before it.
+
+    Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
+    starts from the last one that was. One that does not continue the one before has ``jumped``, and
+    ``lost_at`` says where. With friction the first is that of cables drawn in, and every other
+    remembers the one before it. Raises ``InputError`` for tensions that do not fit.
+    """
+    return ramp(StaticSolver(scene), [scene.check_tension(tension) for tension in tensions])
+
+
+def ramp(
+    solver: StaticSolver, points: Iterable[np.ndarray], start: np.ndarray | None = None
+) -> list[Equilibrium]:
+    """An equilibrium for each set of inputs, each from the last one that was found."""
+    found: list[Equilibrium] = []
+    before: Equilibrium | Slip = Slip.DRAWN_IN
+    can_be_followed = not hindrances(solver.scene)
+    for inputs in points:
+        point = solver.solve(inputs, start, before)
+        if point.found and can_be_followed and isinstance(before, Equilibrium):
+            point = _continued(solver, before, point)
+        found.append(point)
+        if point.found:
+            start, before = point.coordinates, point
+    return found
+
+
+def limit_on_the_way(
+    solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None
+) -> Equilibrium | None:
+    """The equilibrium at which the way to inputs that have none comes to a geometric limit, if it does.
+
+    The way leads from ``start``, or from slack cables and no loads that change.
+    """
+    if hindrances(solver.scene):
+        return None
+    if start is None:
+        drives = solver.scene.cables + solver.scene.driven_loads
+        start = solver.solve(np.concatenate([np.zeros(drives), inputs[drives:]]))
+    if not start.found:
+        return None
+    path = ArcLength(solver, np.array([start.inputs, inputs])).follow(start)
+    return path.end if path.outcome is Outcome.GEOMETRY_LIMIT else None
+
+
+def _continued(solver: StaticSolver, before: Equilibrium, point: Equilibrium) -> Equilibrium:
+    """The equilibrium that continues the one before, or else ``point``, with where the path was lost."""
+    arc = ArcLength(solver, np.array([before.inputs, point.inputs]))
+    if not point.left and _on_one_smooth_path(arc, before, point):
+        return point
+    path = arc.follow(before, until_critical=True)
+    if path.critical or path.outcome is not Outcome.COMPLETED:
+        return replace(point, lost_at=path.end)
+    change = path.end.coordinates - point.coordinates
+    if np.sqrt(arc.inner(change, change)) < SAME:
+        return point
+    return replace(path.end, iterations=point.iterations)
+
+
+def _on_one_smooth_path(arc: ArcLength, before: Equilibrium, point: Equilibrium) -> bool:
+    """Whether both slopes of the path are nearly those of the straight way between the two."""
+    way = point.coordinates - before.coordinates
+    length = np.sqrt(arc.inner(way, way))
+    if length < SAME and not np.array_equal(before.inputs, point.inputs):
+        return point.unstable_directions == before.unstable_directions
+    for place, end in ((0.0, before), (1.0, point)):
+        off = arc.tangent_at(end.coordinates, place)[0] - way
+        if np.sqrt(arc.inner(off, off)) > SMOOTH * length:
+            return False
+    return True

@@ -1,0 +1,108 @@
+"""Folds: an arm bent by nature that snaps over, against the energy of the whole arm."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import whole_arm
+from scipy.optimize import root
+
+from continuum_dyn import Run, load_scenario, simulate
+from continuum_dyn.study import RampStudy, Scenario
+from statics import Critical, Equilibrium, Outcome, Scene
+
+SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
+
+
+@pytest.fixture(scope="module")
+def scenario() -> Scenario:
+    return load_scenario(SNAP)
+
+
+@pytest.fixture(scope="module")
+def followed(scenario: Scenario) -> Run:
+    return simulate(scenario)
+
+
+def folds_of(run: Run) -> list[Equilibrium]:
+    return [point for point in run.equilibria if point.critical is Critical.FOLD]
+
+
+def tension_at_fold_of_whole_arm(scene: Scene, near: Equilibrium) -> float:
+    """Where the energy's dense Hessian loses its rank: grad = 0, H v = 0, |v| = 1 (Moore, Spence 1980)."""
+    n, with_area = scene.arm.segments, replace(scene.arm, area=1.0)  # of no account without extension
+    arm = whole_arm.whole_arm(Scene(with_area, scene.effects))
+
+    def gradient(bends: np.ndarray, tension: float) -> np.ndarray:
+        def energy(q: np.ndarray) -> complex:
+            return whole_arm.potential_energy(arm, q, np.array([tension]))
+
+        return whole_arm.gradient(energy, bends[:, None])[:, 0]
+
+    def turned(bends: np.ndarray, tension: float, way: np.ndarray) -> np.ndarray:
+        along = whole_arm.difference_matrix(
+            lambda t: gradient(bends + t[0] * way, tension), np.zeros(1), [1e-3]
+        )
+        return along[:, 0]
+
+    def unbalanced(unknown: np.ndarray) -> np.ndarray:
+        bends, null, tension = unknown[:n], unknown[n : 2 * n], unknown[-1]
+        return np.concatenate([gradient(bends, tension), turned(bends, tension, null), [null @ null - 1.0]])
+
+    hessian = np.column_stack([turned(near.bend_angle, near.tension[0], way) for way in np.eye(n)])
+    null = np.linalg.eigh(hessian)[1][:, 0]
+    start = np.concatenate([near.bend_angle, null, near.tension])
+    found = root(unbalanced, start, options={"xtol": 1e-11})
+    return float(found.x[-1])
+
+
+def test_folds_are_where_the_energy_of_the_whole_arm_has_them(scenario: Scenario, followed: Run) -> None:
+    folds = folds_of(followed)
+    assert len(folds) == 2
+    for fold in folds:
+        dense = tension_at_fold_of_whole_arm(scenario.scene, fold)
+        assert fold.tension[0] == pytest.approx(dense, rel=1e-6)
+
+
+def test_path_by_arc_length_marks_what_is_unstable_between_its_folds(followed: Run) -> None:
+    assert followed.outcome is Outcome.COMPLETED
+    first, second = (number for number, point in enumerate(followed.equilibria) if point.critical)
+    unstable = [number for number, point in enumerate(followed.equilibria) if not point.stable]
+    assert unstable == list(range(first, second + 1))
+    assert followed.message.count("the path folds at tension") == 2
+    assert max(point.residual for point in followed.equilibria) < 1e-10  # N m, of 0.06
+
+
+def test_path_passes_the_ramps_points_exactly_and_again_after_a_fold(
+    scenario: Scenario, followed: Run
+) -> None:
+    at_two = [point for point in followed.equilibria if point.tension[0] == 2.0]
+    assert [point.stable for point in at_two] == [True, False, True]
+    asked = set(scenario.ramps[0])
+    assert {point.tension[0] for point in followed.equilibria if not point.critical} == asked
+
+
+def test_plain_ramp_tells_where_it_jumps(scenario: Scenario, followed: Run) -> None:
+    run = simulate(replace(scenario, study=RampStudy()))
+    jumps = [point for point in run.equilibria if point.jumped]
+    assert [point.tension[0] for point in jumps] == [4.5]
+    assert jumps[0].lost_at is not None
+    assert jumps[0].lost_at.tension[0] == pytest.approx(folds_of(followed)[0].tension[0], rel=1e-9)
+    assert (
+        "jumps between points at tension 4 N and at tension 4.5 N: the path folds at tension 4.343"
+        in run.message
+    )
+    assert all(point.stable for point in run.equilibria)
+
+
+def test_ramp_up_and_down_jumps_at_the_one_fold_and_at_the_other(scenario: Scenario) -> None:
+    up = scenario.ramps[0]
+    both = replace(scenario, tension=((*up, *up[-2::-1]),), study=RampStudy())
+    jumps = [point for point in simulate(both).equilibria if point.jumped]
+    assert [
+        (point.tension[0], round(float(point.lost_at.tension[0]), 3)) for point in jumps if point.lost_at
+    ] == [
+        (4.5, 4.344),
+        (1.0, 1.013),
+    ]
