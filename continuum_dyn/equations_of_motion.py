@@ -49,7 +49,7 @@ def motion_sweep(
     chain: np.ndarray,
 ) -> tuple[float, float]:
     """Outwards: motion and loads of all segments and disks; returns power in and power dissipated."""
-    measure_moving_cables(q, u, segments, chain)
+    measure_moving_cables(q, u, inputs, segments, chain)
     carried = motion_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         carried = motion_step(i, carried, q, u, w, inputs, segments, disks, chain)
@@ -128,7 +128,7 @@ def rate_jacobian(
     for column in range(2 * size):
         k = column % size
         direction[column // size, k // dofs, k % dofs] = 1.0
-        measure_changes(q, u, segments, chain, direction[0], direction[1])
+        measure_changes(q, u, inputs, segments, chain, direction[0], direction[1])
         carried = motion_tangent_start(inputs, segments, chain)
         for i in range(n):
             carried = motion_tangent_step(
@@ -163,7 +163,7 @@ def observe(
     """
     chain = np.empty((q.shape[1], CHAIN_COLUMNS))
     for s in range(q.shape[0]):
-        measure_moving_cables(q[s], u[s], segments, chain)
+        measure_moving_cables(q[s], u[s], inputs[s], segments, chain)
         carried = observe_start(inputs[s], segments, chain)
         for i in range(q.shape[1]):
             carried = observe_step(

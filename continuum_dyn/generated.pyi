@@ -9,18 +9,25 @@ CHAIN_COLUMNS: int
 BEYOND_TANGENT_START: Carried
 DISPLACEMENT_START: Carried
 ELIMINATE_START: Carried
-LENGTHS_TANGENT_START: Carried
 MOMENTUM_START: Carried
 RESIDUAL_TANGENT_START: Carried
 
 def lengths_step(
-    i: int, carried: Carried, q: np.ndarray, u: np.ndarray, segments: np.ndarray, chain: np.ndarray
+    i: int,
+    carried: Carried,
+    q: np.ndarray,
+    u: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    chain: np.ndarray,
 ) -> Carried: ...
+def lengths_tangent_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def lengths_tangent_step(
     i: int,
     carried: Carried,
     q: np.ndarray,
     u: np.ndarray,
+    inputs: np.ndarray,
     segments: np.ndarray,
     chain: np.ndarray,
     q_change: np.ndarray,

@@ -42,7 +42,7 @@ def pose_sweep(
     q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, disks: np.ndarray, chain: np.ndarray
 ) -> float:
     """Outwards, at rest: what the inward sweeps need; returns the clearance."""
-    measure_cables(q, segments, chain)
+    measure_cables(q, inputs, segments, chain)
     carried = pose_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         carried = pose_step(i, carried, q, inputs, segments, disks, chain)

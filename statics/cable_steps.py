@@ -46,7 +46,7 @@ def lengths_step(forces: SceneForces, outward: Outward = at_rest, *, moves: bool
     return Step(
         "lengths_step",
         "Outwards: hole-to-hole lengths of coupled cables.",
-        ("q", "u", "segments", "chain") if moves else ("q", "segments", "chain"),
+        ("q", *(["u"] if moves else []), "inputs", "segments", "chain"),
         trace,
         carried=carried,
     )

@@ -19,11 +19,11 @@ CLEARANCE_START: Carried
 RESIDUAL_START: Carried
 ELIMINATE_START: Carried
 ELIMINATE_HELD_START: Carried
-LENGTHS_START: Carried
 SUBSTITUTE_START: Carried
 
+def lengths_start(inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray) -> Carried: ...
 def lengths_step(
-    i: int, carried: Carried, q: np.ndarray, segments: np.ndarray, chain: np.ndarray
+    i: int, carried: Carried, q: np.ndarray, inputs: np.ndarray, segments: np.ndarray, chain: np.ndarray
 ) -> Carried: ...
 def beyond_step(i: int, carried: Carried, chain: np.ndarray) -> Carried: ...
 def clearance_step(i: int, carried: Carried, q: np.ndarray, segments: np.ndarray) -> Carried: ...

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
@@ -24,6 +25,9 @@ from statics import (
     StaticSolver,
     codegen,
 )
+
+settings.register_profile("same_every_time", derandomize=True, deadline=None)
+settings.load_profile("same_every_time")
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 JET = SCENARIOS / "follower_tip.toml"

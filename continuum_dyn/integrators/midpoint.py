@@ -61,7 +61,7 @@ def momentum_sweeps(
 ) -> float:
     """dV/dq into ``residual``, dT/du into ``momentum``, dT/dq into ``slope``; returns the power in."""
     _, segments, disks = arm
-    measure_moving_cables(q, u, segments, chain)
+    measure_moving_cables(q, u, inputs, segments, chain)
     outward = velocity_start(inputs, segments, chain)
     for i in range(q.shape[0]):
         outward = velocity_step(i, outward, q, u, inputs, segments, disks, chain)
