@@ -76,14 +76,17 @@ def simulate(
 ) -> Run:
     """Answer a scenario: see ``Run``.
 
-    ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion.
+    ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion, by
+    default those of the scenario's solver.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
     kept. Whatever happens while solving is an outcome, not an exception.
     """
+    if budget is None:
+        budget = Budget(scenario.solver.max_steps, scenario.solver.max_seconds)
     if scenario.chooses_mesh:
-        return _with_chosen_mesh(scenario, progress, budget or Budget())
+        return _with_chosen_mesh(scenario, progress, budget)
     if isinstance(scenario.study, MotionStudy):
-        return _motion(scenario, scenario.study, progress, budget or Budget())
+        return _motion(scenario, scenario.study, progress, budget)
     return _statics(scenario)
 
 
