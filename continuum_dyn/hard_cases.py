@@ -1,6 +1,5 @@
 """Hard cases: a scenario run by every method that claims it, and held to the bounds that it states."""
 
-import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,7 +10,7 @@ import numpy as np
 from continuum_dyn.accuracy import tip_distance
 from continuum_dyn.expect import Expect
 from continuum_dyn.integrators import Budget
-from continuum_dyn.scenario import load_expectations, load_scenario
+from continuum_dyn.scenario import load_expecting
 from continuum_dyn.simulation import Run, simulate
 from continuum_dyn.study import Method, MotionStudy, Scenario
 from continuum_dyn.trajectory import Trajectory
@@ -50,7 +49,7 @@ class Verdict:
 
 def load_case(path: Path) -> HardCase:
     """The case of a scenario file. Raises ``InputError`` if it is not one of a motion, or expects nothing."""
-    scenario, expect = load_scenario(path), load_expectations(path)
+    scenario, expect = load_expecting(path)
     if expect is None:
         raise InputError(f"{path}: expects nothing. Give [expect] outcome, and steps of each method.")
     if not isinstance(scenario.study, MotionStudy):
@@ -64,7 +63,7 @@ def judge(
     case: HardCase,
     others: Iterable[Method] = (),
     patience: float = 3600.0,
-    told: Callable[[str], None] = print,
+    told: Callable[[str], None] = lambda _: None,
 ) -> list[Verdict]:
     """A verdict for each method that claims the case, then for those ``others`` that do not.
 
@@ -91,7 +90,8 @@ def _reference(case: HardCase, method: Method) -> Trajectory | None:
     tight = replace(
         solver, method="chain" if method == "chain" else "explicit", step=None, rtol=rtol, atol=1e-3 * rtol
     )
-    return simulate(replace(case.scenario, solver=tight)).trajectory
+    run = simulate(replace(case.scenario, solver=tight))
+    return run.trajectory if run.outcome is case.expect.outcome else None
 
 
 def _verdict(case: HardCase, method: Method, reference: Trajectory | None, budget: Budget) -> Verdict:
@@ -135,10 +135,11 @@ def missed_by(run: Run, method: Method, tip_error: float | None, expect: Expect)
     found["steps"] = run.trajectory.counters["steps"]
     bounds: dict[str, Any] = {name: getattr(expect, name) for name in found}
     bounds["steps"] = expect.steps.get(method)
+    checked = ((name, value, bounds[name]) for name, value in found.items() if bounds[name] is not None)
     return [
-        f"{name} {value:.3g}, allowed {bounds[name]:.3g}"
-        for name, value in found.items()
-        if bounds[name] is not None and not (value is not None and value <= bounds[name])
+        f"{name} {'not known' if value is None else f'{value:.3g}'}, allowed {bound:.3g}"
+        for name, value, bound in checked
+        if value is None or not value <= bound
     ]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators.esdirk import FINISHED, NO_ROOM, TOO_SMALL
+from continuum_dyn.integrators.esdirk import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.profiles import Span
 
@@ -16,6 +16,9 @@ BATCH = 256
 
 FIRST_PART = 0.01
 """Part of the tolerance by which the first step may displace a disk: it resolves the layer after a jump."""
+
+LEAST_ROUNDINGS = 100.0
+"""Of the time: a step after a span of one or two of them is as long as so many."""
 
 
 class ChainSolver(OdeSolver):
@@ -79,7 +82,7 @@ class ChainSolver(OdeSolver):
         taken, ended, self.internal_rejections = 0, FINISHED, 0
         while taken < rows and ended == FINISHED and self.records[0][taken] < self.t_bound:
             if self.records[0][taken] >= self.spans[self.span].end:
-                self.span += 1
+                self._enter_next_span(taken)
             more, ended = self._advance(slice(taken, rows + 1))
             if ended == NO_ROOM and taken > 0 and more == 1:
                 break  # the step ends where the arm cannot be: it is the next batch's first
@@ -91,6 +94,14 @@ class ChainSolver(OdeSolver):
         self.knows_acceleration = True
         self.t, self.y = float(self.records[0][taken]), self.records[1][taken].copy()
         return True, None
+
+    def _enter_next_span(self, row: int) -> None:
+        """A span of next to no length may have been a jump: no step is much longer than the one before."""
+        self.span += 1
+        if row > 0:
+            t, before = self.records[0][row], self.records[0][row - 1]
+            most = max(MOST_GROWTH * (t - before), LEAST_ROUNDINGS * np.spacing(t))
+            self.next_step = min(self.next_step, most)
 
     def _advance(self, rows: slice) -> tuple[int, int]:
         """Steps within one span from the first of these rows on: how many, and how they ended."""
