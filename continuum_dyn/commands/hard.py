@@ -13,7 +13,7 @@ from statics.errors import InputError, LogError
 if TYPE_CHECKING:
     from continuum_dyn.hard_cases import HardCase, Verdict
 
-PATIENCE = 5.0
+PATIENCE = 2.0
 """Seconds for a method that does not claim a case."""
 COLUMNS = ("case", "method", "outcome", "error", "steps", "work", "time", "")
 CSV_COLUMNS = (
@@ -50,7 +50,7 @@ def hard(
     cases = [load_case(path) for path in paths]
     others: Any = METHODS if every else ()
 
-    def all_judged(told: Callable[[str], None]) -> list[Verdict]:
+    def all_judged(told: Callable[[str], None]) -> "list[Verdict]":
         return [verdict for case in cases for verdict in judge(case, others, PATIENCE, told)]
 
     verdicts = with_status(str(folder), all_judged)
