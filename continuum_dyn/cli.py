@@ -6,7 +6,7 @@ from typing import Any
 
 import typer
 
-from continuum_dyn.commands import cost, explain, modes, play, reproduce, run
+from continuum_dyn.commands import cost, explain, hard, modes, play, reproduce, run
 from statics.errors import ContinuumError
 
 BAD_INPUT = 2
@@ -39,7 +39,7 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
     return guarded
 
 
-for _command in (run.run, play.play, explain.explain, modes.modes, cost.cost, reproduce.reproduce):
+for _command in (run.run, play.play, explain.explain, modes.modes, cost.cost, hard.hard, reproduce.reproduce):
     app.command()(with_exit_status(_command))
 
 

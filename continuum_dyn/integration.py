@@ -1,21 +1,22 @@
-"""The equations of motion through ``scipy.integrate.solve_ivp``, from corner to corner.
+"""The equations of motion through a solver with SciPy's interface, from corner to corner.
 
-Integration restarts at every corner of a profile, so that no step crosses one.
+No step crosses a corner of a profile. Solvers start anew there; the chain's own only where inputs jump or a
+wave sets in: elsewhere accelerations go on, and the size of the steps with them.
 """
 
 import warnings
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import OdeSolver
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check, interruptible
 from continuum_dyn.modes import fastest_frequency
-from continuum_dyn.profiles import Span
+from continuum_dyn.profiles import Span, inputs_of, joined_spans
 from continuum_dyn.study import Solver
 from continuum_dyn.trajectory import Trajectory, trajectory_of
 from statics.outcome import Outcome
@@ -104,22 +105,23 @@ def integrate(
     solver = with_step(dynamics, solver, stretches, y)
     parts = [_Samples(samples[:1], y[None, :], stretches[0].inputs(samples[:1]))]
     counters: Counter[str] = Counter()
+    before, done = None, 1
     with interruptible(monitor), warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        for before, span in zip([None, *stretches], stretches, strict=False):
+        for joined in _joined(dynamics, solver, stretches):
             if before is not None:
-                add_jump(dynamics, before, span, monitor)
-            inside = samples[1:][(samples[1:] >= span.start) & (samples[1:] < span.end)]
-            if span is stretches[-1]:
-                inside = samples[1:][samples[1:] >= span.start]
-            solution = _solve_span(dynamics, solver, span, np.append(inside, span.end), monitor)
-            time = np.array(solution.t[: len(inside)], dtype=float)
-            states = np.reshape(solution.y, (dynamics.state_size, -1)).T[: len(time)]
-            parts.append(_Samples(time, states, span.inputs(time)))
-            counters.update(_counted(solution, dynamics, solver))
-            if solution.status != 0:
-                parts.append(_last_reached(parts, span, monitor.reached))
+                add_jump(dynamics, before, joined[0], monitor)
+            before = joined[-1]
+            side = "right" if before is stretches[-1] else "left"
+            until = int(np.searchsorted(samples, before.end, side=side))
+            stepper, states = _solve(dynamics, solver, joined, samples[done:until], monitor)
+            time = samples[done : done + len(states)]
+            parts.append(_Samples(time, states, inputs_of(joined, time)))
+            counters.update(_counted(stepper, dynamics, solver))
+            if stepper.status == "failed":
+                parts.append(_last_reached(parts, joined, monitor.reached))
                 break
+            done = until
     times, states, inputs = (np.concatenate(column) for column in zip(*parts, strict=True))
     counters["steps"] = monitor.steps - steps
     if solver.method in TABLEAUX:
@@ -131,27 +133,29 @@ def integrate(
     return finite
 
 
-def _last_reached(parts: list[_Samples], span: Span, reached: tuple[float, np.ndarray]) -> _Samples:
+def _last_reached(
+    parts: list[_Samples], joined: Sequence[Span], reached: tuple[float, np.ndarray]
+) -> _Samples:
     """The last acceptable state of a run that stopped early, unless it is a sample already."""
     t, y = reached
     sampled = any(part.time.size and part.time[-1] >= t for part in parts)
     time = np.array([] if sampled else [t])
-    return _Samples(time, np.tile(y, (time.size, 1)), span.inputs(time))
+    return _Samples(time, np.tile(y, (time.size, 1)), inputs_of(joined, time))
 
 
-def _counted(solution: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
-    """What a span cost: the solver's own counts, and machine-independent work in segment evaluations.
+def _counted(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
+    """What a stretch cost: the solver's own counts, and machine-independent work in segment evaluations.
 
     One is a segment's part of a right-hand side, of a Newton iteration, or of one column of a Jacobian.
     """
     n, columns = dynamics.scene.arm.segments, 2 * dynamics.size
     if solver.method in (*TABLEAUX, "midpoint"):
-        return {"newton_iterations": solution.nfev, "segment_evaluations": solution.nfev * n}
+        return {"newton_iterations": stepper.nfev, "segment_evaluations": stepper.nfev * n}
     return {
-        "evaluations": int(solution.nfev),
-        "jacobians": int(solution.njev),
-        "decompositions": int(solution.nlu),
-        "segment_evaluations": int(solution.nfev + solution.njev * columns) * n,
+        "evaluations": int(stepper.nfev),
+        "jacobians": int(stepper.njev),
+        "decompositions": int(stepper.nlu),
+        "segment_evaluations": int(stepper.nfev + stepper.njev * columns) * n,
     }
 
 
@@ -161,27 +165,51 @@ def _first_step(dynamics: Dynamics, span: Span) -> float:
     return min(FIRST_STEP / fastest, span.end - span.start)
 
 
-def _solve_span(dynamics: Dynamics, solver: Solver, span: Span, at: np.ndarray, monitor: Monitor) -> Any:
-    """``solve_ivp`` over one span, from where the monitor has seen the last acceptable state."""
-    return solve_ivp(
-        lambda t, y: dynamics.rate(t, y, span),
-        (span.start, span.end),
+def _joined(dynamics: Dynamics, solver: Solver, stretches: list[Span]) -> list[list[Span]]:
+    """The spans that one solver may cross: the chain's own go on where neither forces nor a wave set in.
+
+    Where nodes carry no mass a corner of the forces is a jump of their accelerations.
+    """
+    if solver.method not in TABLEAUX or dynamics.scene.arm.massless_nodes:
+        return [[span] for span in stretches]
+    return joined_spans(stretches)
+
+
+def _solve(
+    dynamics: Dynamics, solver: Solver, joined: list[Span], at: np.ndarray, monitor: Monitor
+) -> tuple[OdeSolver, np.ndarray]:
+    """The solver after its last step from where the monitor is, and states at the times that it came to.
+
+    A step that the monitor ends the run after is sampled like any other, unless its end is not acceptable.
+    """
+    stepper: Any = METHODS[solver.method](
+        lambda t, y: dynamics.rate(t, y, joined[0]),
+        joined[0].start,
         monitor.reached[1],
-        method=METHODS[solver.method],
-        t_eval=np.unique(at),
+        joined[-1].end,
         monitor=monitor,
-        **_options(dynamics, solver, span),
+        **_options(dynamics, solver, joined),
     )
+    found, done = [np.empty((0, dynamics.state_size))], 0
+    while stepper.status == "running":
+        stepper.step()
+        until = int(np.searchsorted(at, stepper.t, side="right"))
+        acceptable = stepper.t_old is not None and monitor.reached[0] == stepper.t
+        if acceptable and until > done:
+            found.append(stepper.dense_output()(at[done:until]).T)
+            done = until
+    return stepper, np.concatenate(found)
 
 
-def _options(dynamics: Dynamics, solver: Solver, span: Span) -> dict[str, Any]:
+def _options(dynamics: Dynamics, solver: Solver, joined: list[Span]) -> dict[str, Any]:
     """What the method needs beside the equations."""
+    span = joined[0]
     if solver.method == "midpoint":
         return {"dynamics": dynamics, "span": span, "step": solver.step}
     first_step = _first_step(dynamics, span)
     if solver.method in TABLEAUX:
         allowed = (solver.rtol + solver.atol) * dynamics.scene.arm.total_length
-        chain = {"dynamics": dynamics, "span": span, "tableau": TABLEAUX[solver.method]}
+        chain = {"dynamics": dynamics, "spans": joined, "tableau": TABLEAUX[solver.method]}
         return chain | {"tolerance": allowed, "first_step": first_step}
     tolerances = {"rtol": solver.rtol, "atol": solver.atol * dynamics.scales(), "first_step": first_step}
     if solver.method in IMPLICIT:

@@ -23,6 +23,9 @@ from statics.errors import InputError
 TIME_RESOLUTION = 1e-300
 """Rows of a table closer than this (s) would have slopes beyond floating point."""
 
+SAME = 1e-12
+"""Part of a value by which rounding may part the two pieces that meet in it."""
+
 Piece = tuple[float, float, float, float, float, float]
 """Start (s), value, slope (1/s), amplitude, angular frequency (rad/s), phase; values in N for a tension."""
 
@@ -251,3 +254,31 @@ def spans(profiles: Sequence[InPieces], duration: float) -> list[Span]:
         ]
         result.append(Span(start, end, np.array(active).reshape(len(profiles), 6)))
     return result
+
+
+def joined_spans(stretches: Sequence[Span]) -> list[list[Span]]:
+    """The spans in groups within which no input jumps and no wave sets in."""
+    groups = [[stretches[0]]]
+    for before, span in pairwise(stretches):
+        if _goes_on(before, span):
+            groups[-1].append(span)
+        else:
+            groups.append([span])
+    return groups
+
+
+def _goes_on(before: Span, span: Span) -> bool:
+    """Whether all inputs go on where one span ends and the next begins."""
+    first, last = (stretch.inputs(np.array([span.start]))[0] for stretch in (before, span))
+    sets_in = (span.pieces[:, 3] != 0.0) & (span.pieces != before.pieces).any(axis=1)
+    return not sets_in.any() and bool(np.all(np.abs(last - first) <= SAME * (np.abs(first) + np.abs(last))))
+
+
+def inputs_of(joined: Sequence[Span], time: np.ndarray) -> np.ndarray:
+    """Values at increasing times within consecutive spans, shape (times, profiles); later spans count."""
+    edges = np.searchsorted(time, [span.start for span in joined[1:]])
+    parts = np.split(time, edges)
+    return np.concatenate(
+        [span.inputs(part) for span, part in zip(joined, parts, strict=True) if part.size]
+        or [joined[0].inputs(time)]
+    )

@@ -12,6 +12,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from continuum_dyn.expect import Expect
 from continuum_dyn.profiles import Constant, Profile
 from continuum_dyn.scenario_errors import explain
 from continuum_dyn.scenario_file import (
@@ -37,6 +38,11 @@ def load_scenario(path: str | Path) -> Scenario:
     Raises ``InputError`` whose text names the file, every place in it that is wrong, what is allowed
     there and the nearest match.
     """
+    return load_expecting(path)[0]
+
+
+def load_expecting(path: str | Path) -> tuple[Scenario, Expect | None]:
+    """The scenario, and what it expects of its run. Raises ``InputError`` like ``load_scenario``."""
     path = Path(path)
     text = read_text(path)
     try:
@@ -46,7 +52,7 @@ def load_scenario(path: str | Path) -> Scenario:
     try:
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
         _check_tolerances(content)
-        return _build(file, path, text)
+        return _build(file, path, text), file.expect
     except ValidationError as error:
         raise InputError(explain(path, error)) from error
     except InputError as error:

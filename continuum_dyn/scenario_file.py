@@ -5,6 +5,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, Discriminator, Field, Tag, create_model
 
 from continuum_dyn.effects import EFFECTS
+from continuum_dyn.expect import Expect
 from continuum_dyn.profiles import PROFILES, Constant, Ramp, Sine, SmoothRamp, Step
 from continuum_dyn.study import (
     Accuracy,
@@ -161,3 +162,4 @@ class ScenarioFile(BaseModel):
     study: StudyTable
     solver: Solver = Solver()
     accuracy: Accuracy | None = None
+    expect: Expect | None = None

@@ -79,14 +79,17 @@ def simulate(
 ) -> Run:
     """Answer a scenario: see ``Run``.
 
-    ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion.
+    ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion, by
+    default those of the scenario's solver.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
     kept. Whatever happens while solving is an outcome, not an exception.
     """
+    if budget is None:
+        budget = Budget(scenario.solver.max_steps, scenario.solver.max_seconds)
     if scenario.chooses_mesh:
-        return _with_chosen_mesh(scenario, progress, budget or Budget())
+        return _with_chosen_mesh(scenario, progress, budget)
     if isinstance(scenario.study, MotionStudy):
-        return _motion(scenario, scenario.study, progress, budget or Budget())
+        return _motion(scenario, scenario.study, progress, budget)
     return _statics(scenario)
 
 
@@ -222,7 +225,7 @@ def _motion(
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
-    end = statics.solve(last, start.coordinates, start)
+    end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)
     path = ramp(statics, moved.trajectory.inputs, start.coordinates) if study.static_path else []
     solve_time = time.perf_counter() - started
     ends, growths = [start, end], [None, None]
@@ -231,7 +234,7 @@ def _motion(
     run = Run(
         scenario,
         monitor.outcome or Outcome.COMPLETED,
-        monitor.message,
+        monitor.message or message,
         ends,
         path,
         moved.trajectory,
@@ -240,6 +243,25 @@ def _motion(
         solve_time=solve_time,
     )
     return run if monitor.outcome else _compared(run, study, statics.branches(last, ends[-1]), growths[-1])
+
+
+def _end(
+    statics: StaticSolver, inputs: np.ndarray, start: Equilibrium, moved: Trajectory, within: float
+) -> tuple[Equilibrium, str]:
+    """Where the motion may end: the equilibrium found from its start, or another one that it came to instead.
+
+    The latter is told in words. Cables that rub leave it to the motion's history where it rests.
+    """
+    end = statics.solve(inputs, start.coordinates, start)
+    if len(statics.branches(inputs, end)) > 1 or (end.found and tip_gap(moved.tip, [end.tip]) < within):
+        return end, ""
+    last = moved.bend_angle[-1], None if moved.elongation is None else moved.elongation[-1]
+    near = statics.solve(inputs, np.column_stack([column for column in last if column is not None]))
+    if not (near.found and tip_gap(moved.tip, [near.tip]) < within):
+        return end, ""
+    x, y, _ = near.tip
+    told = f"at another equilibrium than the one found from the start: tip at x {x:.4g} m, y {y:.4g} m"
+    return near, told if end.found and tip_gap(near.tip, [end.tip]) > within else ""
 
 
 class _Moved(NamedTuple):

@@ -94,13 +94,15 @@ class Solver:
     shortest period of the arm at the start or of its drive. "auto" decides between them by the motion's own
     modes. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend angles; elongations use it
     times the segment's rest length, rates the same times the arm's natural frequency, energies times its
-    bending stiffness over that length.
+    bending stiffness over that length. ``max_steps`` and ``max_seconds`` bound what a motion may cost.
     """
 
     method: Method = "auto"
     rtol: Annotated[float, Field(ge=1e-14, lt=1)] = 1e-7
     atol: Positive = 1e-9
     step: Positive | None = None
+    max_steps: Annotated[int, Field(ge=1)] = 10_000_000
+    max_seconds: Positive = 3600.0
 
     def __post_init__(self) -> None:
         if self.step is not None and self.method != "midpoint":

@@ -53,9 +53,18 @@ class Trajectory:
             value for value in (*vars(self).values(), *self.ledger.values()) if isinstance(value, np.ndarray)
         ]
         good = np.all([np.isfinite(c).all(axis=tuple(range(1, c.ndim))) for c in columns], axis=0)
-        count = good.size if good.all() else int(np.argmin(good))
+        return self.first(good.size if good.all() else int(np.argmin(good)))
+
+    def first(self, count: int) -> "Trajectory":
+        """That many samples from the start on."""
         cut = {name: value[:count] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
         return replace(self, **cut, ledger={name: value[:count] for name, value in self.ledger.items()})
+
+    @property
+    def stored_energy(self) -> np.ndarray:
+        """Kinetic, elastic and gravity's energy, shape (samples,), J."""
+        parts = ("kinetic_energy", "elastic_energy", "gravity_energy")
+        return np.sum([self.ledger[name] for name in parts], axis=0)
 
     @property
     def ledger_gap(self) -> np.ndarray:
@@ -63,8 +72,7 @@ class Trajectory:
 
         Zero up to the integrator's error.
         """
-        parts = ("kinetic_energy", "elastic_energy", "gravity_energy")
-        stored = np.sum([self.ledger[name] for name in parts], axis=0)
+        stored = self.stored_energy
         return stored - stored[0] - self.ledger["input_work"] + self.ledger["dissipated_energy"]
 
 

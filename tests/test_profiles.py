@@ -5,13 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from conftest import moving, rone2012
+from conftest import motion, moving, rone2012
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from continuum_dyn import Scenario, simulate
-from continuum_dyn.integrators import METHODS
+from continuum_dyn.integrators import METHODS, ChainSolver
 from continuum_dyn.profiles import (
     TIME_RESOLUTION,
     Constant,
@@ -21,6 +21,7 @@ from continuum_dyn.profiles import (
     SmoothRamp,
     Step,
     Table,
+    joined_spans,
     lowest,
     spans,
 )
@@ -99,7 +100,10 @@ def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch, method: Metho
 
     def noted(solver: object) -> object:
         message = plain_step(solver)  # pyright: ignore[reportArgumentType]
-        taken.append((solver.t_old, solver.t))  # pyright: ignore[reportAttributeAccessIssue]
+        ends = np.array([solver.t_old, solver.t])  # pyright: ignore[reportAttributeAccessIssue]
+        if isinstance(solver, ChainSolver):
+            ends = solver.records[0][: solver.internal_steps + 1]
+        taken.extend(pairwise(ends.tolist()))
         return message
 
     monkeypatch.setattr(METHODS[method], "step", noted)
@@ -110,6 +114,29 @@ def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch, method: Metho
     assert run.trajectory is not None
     assert not [(a, b, c) for a, b in taken for c in corners if a < c < b]
     assert set(corners) <= {end for _, end in taken}
+
+
+@pytest.mark.parametrize("method", ["chain", "explicit"])
+def test_a_step_keeps_its_size_across_corners_where_nothing_jumps(method: Method) -> None:
+    """A straight ramp costs as much in one piece as in four hundred, but for one step a piece."""
+    scene = moving(rone2012()).without("extension")
+    fine = np.linspace(0.0, 0.2, 401)
+    whole, cut = (
+        motion(Scenario(scene, (profile,), MotionStudy(0.2, samples=11), Solver(method, rtol=1e-10)))
+        for profile in (
+            Table((0.0, 0.2), (0.0, 1.0)),
+            Table(tuple(fine.tolist()), tuple((5.0 * fine).tolist())),
+        )
+    )
+    assert cut.counters["steps"] < whole.counters["steps"] + 420
+    assert np.abs(cut.disk_y - whole.disk_y).max() < 2e-8  # m, by some 500 steps of 8e-12
+
+
+def test_a_jump_and_a_wave_start_the_steps_anew() -> None:
+    profile = Table((0.0, 0.1, 0.2), (0.0, 1.0, 0.5))
+    step, wave = Step(0.0, 1.0, at=0.15), SmoothRamp(0.0, 1.0, start=0.17, end=0.3)
+    joined = joined_spans(spans((profile, step, wave), 0.4))
+    assert [[span.start for span in group] for group in joined] == [[0.0, 0.1], [0.15], [0.17, 0.2, 0.3]]
 
 
 def test_motion_starts_from_the_equilibrium_before_a_step_at_zero() -> None:

@@ -1,12 +1,13 @@
 """The chain's own implicit integrator behind SciPy's interface: many compiled steps to one call."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators.esdirk import TOO_SMALL
+from continuum_dyn.integrators.esdirk import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.profiles import Span
 
@@ -16,15 +17,19 @@ BATCH = 256
 FIRST_PART = 0.01
 """Part of the tolerance by which the first step may displace a disk: it resolves the layer after a jump."""
 
+LEAST_ROUNDINGS = 100.0
+"""Of the time: a step after a span of one or two of them is as long as so many."""
+
 
 class ChainSolver(OdeSolver):
     """ESDIRK on the chain, O(n) a stage, error in metres: for ``solve_ivp(..., method=ChainSolver)``.
 
-    Options: ``dynamics`` and ``span``, whose right-hand side this is (``fun`` is not called); ``tolerance``,
-    the largest displacement (m) of any disk by the error of one step; ``first_step`` (s), at most;
-    ``tableau``. ``internal_steps`` and ``internal_rejections`` count those of the last call, which takes no
-    more than ``steps_left``. Where nodes carry no mass the start's accelerations are not known; a first step
-    by ``SDIRK4``, which does not ask for them, ends in some that fit.
+    Options: ``dynamics`` and ``spans``, whose right-hand side this is (``fun`` is not called), one after the
+    other without a jump of accelerations; ``tolerance``, the largest displacement (m) of any disk by the
+    error of one step; ``first_step`` (s), at most; ``tableau``. ``internal_steps`` and
+    ``internal_rejections`` count those of the last call, which takes no more than ``steps_left``. Where nodes
+    carry no mass the start's accelerations are not known; a first step by ``SDIRK4``, which does not ask for
+    them, ends in some that fit.
     """
 
     steps_left = BATCH
@@ -38,14 +43,15 @@ class ChainSolver(OdeSolver):
         vectorized: bool = False,
         *,
         dynamics: Dynamics,
-        span: Span,
+        spans: Sequence[Span],
         tolerance: float,
         first_step: float,
         tableau: Tableau = ESDIRK5,
     ) -> None:
         super().__init__(fun, t0, y0, t_bound, vectorized)
         self.kernel, segments, disks = dynamics.implicit
-        self.arm = (span.pieces, segments, disks)
+        self.tables = segments, disks
+        self.spans, self.span = spans, 0
         self.tableau = tableau
         self.tolerance = tolerance
         shape = (BATCH + 1, dynamics.scene.arm.segments, dynamics.dofs)
@@ -55,7 +61,7 @@ class ChainSolver(OdeSolver):
             np.empty(shape),
             np.empty((shape[0], 2)),
         )
-        push = self.kernel.start_records(t0, np.asarray(y0, dtype=float), self.arm, self.records)
+        push = self.kernel.start_records(t0, np.asarray(y0, dtype=float), self._arm, self.records)
         self.next_step = first_step
         self.knows_acceleration = not dynamics.scene.arm.massless_nodes
         if not self.knows_acceleration:
@@ -65,31 +71,56 @@ class ChainSolver(OdeSolver):
         self.rate = 0.1
         self.internal_steps = self.internal_rejections = 0
 
+    @property
+    def _arm(self) -> tuple[np.ndarray, ...]:
+        return (self.spans[self.span].pieces, *self.tables)
+
     def _step_impl(self) -> tuple[bool, str | None]:
         for column in self.records:
             column[0] = column[self.internal_steps]
-        tableau = self.tableau if self.knows_acceleration else SDIRK4
-        rows = (min(BATCH, self.steps_left) if self.knows_acceleration else 1) + 1
-        ended, taken, self.next_step, self.rate, rejected, iterations = self.kernel.advance(
-            self.t_bound,
-            self.next_step,
-            self.rate,
-            tuple(column[:rows] for column in self.records),
-            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor),
-            tableau.order,
-            self.tolerance,
-            self.arm,
-        )
-        self.internal_steps, self.internal_rejections = taken, rejected
-        self.nfev += iterations
-        self.njev += iterations
-        self.nlu += iterations
+        rows = min(BATCH, self.steps_left) if self.knows_acceleration else 1
+        taken, ended, self.internal_rejections = 0, FINISHED, 0
+        while taken < rows and ended == FINISHED and self.records[0][taken] < self.t_bound:
+            if self.records[0][taken] >= self.spans[self.span].end:
+                self._enter_next_span(taken)
+            more, ended = self._advance(slice(taken, rows + 1))
+            if ended == NO_ROOM and taken > 0 and more == 1:
+                break  # the step ends where the arm cannot be: it is the next batch's first
+            taken += more
+        self.internal_steps = taken
         if taken == 0:
             reason = "step size fell below rounding" if ended == TOO_SMALL else "no step was possible"
             return False, f"{reason} ({self.next_step:.3g} s)"
         self.knows_acceleration = True
         self.t, self.y = float(self.records[0][taken]), self.records[1][taken].copy()
         return True, None
+
+    def _enter_next_span(self, row: int) -> None:
+        """A span of next to no length may have been a jump: no step is much longer than the one before."""
+        self.span += 1
+        if row > 0:
+            t, before = self.records[0][row], self.records[0][row - 1]
+            most = max(MOST_GROWTH * (t - before), LEAST_ROUNDINGS * np.spacing(t))
+            self.next_step = min(self.next_step, most)
+
+    def _advance(self, rows: slice) -> tuple[int, int]:
+        """Steps within one span from the first of these rows on: how many, and how they ended."""
+        tableau = self.tableau if self.knows_acceleration else SDIRK4
+        ended, taken, self.next_step, self.rate, rejected, iterations = self.kernel.advance(
+            self.spans[self.span].end,
+            self.next_step,
+            self.rate,
+            tuple(column[rows] for column in self.records),
+            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor),
+            tableau.order,
+            self.tolerance,
+            self._arm,
+        )
+        self.internal_rejections += rejected
+        self.nfev += iterations
+        self.njev += iterations
+        self.nlu += iterations
+        return taken, ended
 
     def _dense_output_impl(self) -> DenseOutput:
         rows = slice(0, self.internal_steps + 1)

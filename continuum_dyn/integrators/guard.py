@@ -1,7 +1,7 @@
 """The guard around every solver: budgets, non-finite states, geometric limits, Ctrl-C, progress.
 
-``solve_ivp`` has none of these. A guarded solver fails at the first step that breaks a bound, so that
-``solve_ivp`` returns what it had; the ``Monitor`` knows why.
+SciPy's solvers have none of these. A guarded one fails at the first step that breaks a bound, and the
+``Monitor`` knows why.
 """
 
 import signal
@@ -15,15 +15,16 @@ from typing import Any
 import numpy as np
 from scipy.integrate import OdeSolver
 
+from continuum_dyn.study import Solver
 from statics.outcome import Outcome
 
 
 @dataclass(frozen=True)
 class Budget:
-    """What one run may cost at most."""
+    """What one run may cost at most; by default what ``Solver`` says."""
 
-    steps: int = 10_000_000
-    seconds: float = 3600.0
+    steps: int = Solver.max_steps
+    seconds: float = Solver.max_seconds
 
 
 @dataclass
