@@ -73,7 +73,8 @@ def judge(
     told(f"{case.name}: reference")
     reference = _reference(case, claiming[0])
     verdicts = []
-    for method in (*claiming, *(other for other in others if other not in claiming)):
+    methods: list[Method] = [*claiming, *(other for other in others if other not in claiming)]
+    for method in methods:
         told(f"{case.name}: {method}")
         seconds = case.scenario.solver.max_seconds
         if method not in claiming:
