@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check, interruptible
+from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Span
 from continuum_dyn.study import Solver
@@ -104,7 +104,7 @@ def integrate(
     solver = with_step(dynamics, solver, stretches, y)
     parts = [_Samples(samples[:1], y[None, :], stretches[0].inputs(samples[:1]))]
     counters: Counter[str] = Counter()
-    with interruptible(monitor), warnings.catch_warnings():
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for before, span in zip([None, *stretches], stretches, strict=False):
             if before is not None:

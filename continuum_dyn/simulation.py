@@ -22,6 +22,7 @@ from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, So
 from continuum_dyn.trajectory import Trajectory
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
+from statics.interruption import Interruption, allowed, held
 from statics.outcome import Outcome
 
 TIME_PART = 0.25
@@ -78,13 +79,19 @@ def simulate(
 
     ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
-    kept. Whatever happens while solving is an outcome, not an exception.
+    kept. Whatever happens while solving is an outcome, not an exception, Ctrl-C too: what was computed by
+    then is in the run. Pressed again, it raises ``KeyboardInterrupt``.
     """
-    if scenario.chooses_mesh:
-        return _with_chosen_mesh(scenario, progress, budget or Budget())
-    if isinstance(scenario.study, MotionStudy):
-        return _motion(scenario, scenario.study, progress, budget or Budget())
-    return _statics(scenario)
+    with held() as interruption:
+        if scenario.chooses_mesh:
+            run = _with_chosen_mesh(scenario, progress, budget or Budget())
+        elif isinstance(scenario.study, MotionStudy):
+            run = _motion(scenario, scenario.study, progress, budget or Budget(), interruption)
+        else:
+            run = _statics(scenario, interruption)
+        if run.outcome is Outcome.INTERRUPTED:
+            interruption.asked = False
+    return run
 
 
 def _with_chosen_mesh(scenario: Scenario, progress: Callable[[float], None] | None, budget: Budget) -> Run:
@@ -140,17 +147,21 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
     )
 
 
-def _statics(scenario: Scenario) -> Run:
-    solver = StaticSolver(scenario.scene)
+def _statics(scenario: Scenario, interruption: Interruption) -> Run:
+    try:
+        with allowed():
+            solver = StaticSolver(scenario.scene)
+            solver.warm_up()
+    except KeyboardInterrupt:
+        return _interrupted_early(scenario)
     if isinstance(scenario.study, RampStudy):
         tensions = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
         others = scenario.initial_tension[len(scenario.tension) :]
         tensions = np.hstack([tensions, np.tile(others, (len(tensions), 1))])
     else:
         tensions = scenario.initial_tension[None, :]
-    solver.warm_up()
     started = time.perf_counter()
-    points = solver.ramp(tensions)
+    points = solver.ramp(interruption.until_asked(tensions))
     solve_time = time.perf_counter() - started
     message, growths = "", [None] * len(points)
     if any(point.stable is None for point in points):
@@ -162,7 +173,13 @@ def _statics(scenario: Scenario) -> Run:
         if point.outcome is not Outcome.COMPLETED:
             outcome, message = point.outcome, _why(point, growth)
             break
+    if len(points) < len(tensions):
+        outcome, message = Outcome.INTERRUPTED, f"interrupted after {len(points)} of {len(tensions)} points"
     return Run(scenario, outcome, message, points, solve_time=solve_time)
+
+
+def _interrupted_early(scenario: Scenario) -> Run:
+    return Run(scenario, Outcome.INTERRUPTED, "interrupted before anything was computed")
 
 
 def _judged(dynamics: Dynamics, points: list[Equilibrium]) -> tuple[list[Equilibrium], list[Growth | None]]:
@@ -198,28 +215,41 @@ def _settled_on(
 
 
 def _motion(
-    scenario: Scenario, study: MotionStudy, progress: Callable[[float], None] | None, budget: Budget
+    scenario: Scenario,
+    study: MotionStudy,
+    progress: Callable[[float], None] | None,
+    budget: Budget,
+    interruption: Interruption,
 ) -> Run:
-    statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
+    try:
+        with allowed():
+            statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
+            statics.warm_up()
+    except KeyboardInterrupt:
+        return _interrupted_early(scenario)
     stretches = spans(scenario.profiles, study.duration)
-    statics.warm_up()
     started = time.perf_counter()
     start = statics.solve(scenario.initial_tension)
     if not start.found:
         return Run(scenario, start.outcome, _why(start), [start], solve_time=time.perf_counter() - started)
     y = dynamics.state(start.coordinates)
-    solver = _settled_on(scenario, study, dynamics, y, stretches)
-    warm_up(dynamics, solver, stretches[0])
+    try:
+        with allowed():
+            solver = _settled_on(scenario, study, dynamics, y, stretches)
+            warm_up(dynamics, solver, stretches[0])
+    except KeyboardInterrupt:
+        return Run(scenario, Outcome.INTERRUPTED, "interrupted before the motion began", [start])
     started = time.perf_counter()
     monitor = Monitor(
         inspect=inspector(dynamics),
         progress=None if progress is None else lambda t: progress(t / study.duration),
         budget=budget,
+        interruption=interruption,
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end = statics.solve(last, start.coordinates, start)
-    path = statics.ramp(moved.trajectory.inputs, start.coordinates) if study.static_path else []
+    path = _static_path(statics, moved.trajectory, start, monitor) if study.static_path else []
     solve_time = time.perf_counter() - started
     ends, growths = [start, end], [None, None]
     if why_not_judged(scenario.scene) is None:
@@ -236,6 +266,16 @@ def _motion(
         solve_time=solve_time,
     )
     return run if monitor.outcome else _compared(run, study, statics.branches(last, ends[-1]), growths[-1])
+
+
+def _static_path(
+    statics: StaticSolver, trajectory: Trajectory, start: Equilibrium, monitor: Monitor
+) -> list[Equilibrium]:
+    """The equilibrium of every sample, or of those before Ctrl-C."""
+    path = statics.ramp(monitor.interruption.until_asked(trajectory.inputs), start.coordinates)
+    if len(path) < len(trajectory.inputs):
+        monitor.stop(Outcome.INTERRUPTED, f"interrupted after the motion, {len(path)} points on its path")
+    return path
 
 
 class _Moved(NamedTuple):
