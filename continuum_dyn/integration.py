@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check, interruptible
+from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Span, inputs_of, joined_spans
 from continuum_dyn.study import Solver
@@ -106,7 +106,7 @@ def integrate(
     parts = [_Samples(samples[:1], y[None, :], stretches[0].inputs(samples[:1]))]
     counters: Counter[str] = Counter()
     before, done = None, 1
-    with interruptible(monitor), warnings.catch_warnings():
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for joined in _joined(dynamics, solver, stretches):
             if before is not None:

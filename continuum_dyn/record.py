@@ -22,6 +22,7 @@ from continuum_dyn.study import MotionStudy, Scenario
 from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium
 from statics.errors import LogError
+from statics.interruption import held
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
 
@@ -133,15 +134,16 @@ def _write_meshes(group: h5py.Group, meshes: Sequence[MeshPrice]) -> None:
 def _whole_file(path: Path) -> Iterator[h5py.File]:
     """A new file that takes its place only when it is complete."""
     part = path.with_name(path.name + ".part")
-    try:
-        with h5py.File(part, "w", libver=("v110", "v110")) as file:
-            yield file
-        part.replace(path)
-    except OSError as error:
-        raise LogError(f"cannot write {path}: {error.strerror or error}.") from error
-    finally:
-        with suppress(OSError):
-            part.unlink()
+    with held():
+        try:
+            with h5py.File(part, "w", libver=("v110", "v110")) as file:
+                yield file
+            part.replace(path)
+        except OSError as error:
+            raise LogError(f"cannot write {path}: {error.strerror or error}.") from error
+        finally:
+            with suppress(OSError):
+                part.unlink()
 
 
 def _write(file: h5py.File, run: Run) -> None:

@@ -47,12 +47,11 @@ def load_expecting(path: str | Path) -> tuple[Scenario, Expect | None]:
     text = read_text(path)
     try:
         content = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: not a TOML file: {error}.") from error
-    try:
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
         _check_tolerances(content)
         return _build(file, path, text), file.expect
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: not a TOML file: {error}.") from error
     except ValidationError as error:
         raise InputError(explain(path, error)) from error
     except InputError as error:

@@ -64,20 +64,24 @@ def _one(detail: Any) -> str:
     inside = _section(place[:-1])
     if kind in ("extra_forbidden", "unexpected_keyword_argument"):
         what = "effect" if inside == "effects" else "key"
-        return f"{_where(place[:-1])}: unknown {what} '{key}'.{did_you_mean(key, _known(inside))}"
+        return f"{_where(place[:-1])}: unknown {what} {_short(repr(key))}.{did_you_mean(key, _known(inside))}"
     if kind in ("missing", "missing_argument"):
         return f"{_where(place[:-1])}: missing '{key}'. Known: {', '.join(_known(inside))}."
     if kind == "union_tag_invalid":
-        tag = detail["ctx"]["tag"]
-        return f"{_where(place)}: unknown kind '{tag}'.{did_you_mean(tag, STUDIES)}"
+        tag = str(detail["ctx"]["tag"])
+        return f"{_where(place)}: unknown kind {_short(repr(tag))}.{did_you_mean(tag, STUDIES)}"
     if kind == "union_tag_not_found":
         return f"{_where(place)}: missing 'kind'. Known: {', '.join(STUDIES)}."
-    read = repr(detail["input"])
-    read = read if len(read) <= 60 else f"{read[:57]}..."
+    read = _short(repr(detail["input"]))
     if kind == "string_pattern_mismatch":
         return f"{_where(place)}: unknown profile {read}.{did_you_mean(str(detail['input']), PROFILES)}"
     message = detail["msg"][0].lower() + detail["msg"][1:]
     return f"{_where(place)}: {message}; read {read}."
+
+
+def _short(read: str) -> str:
+    """What was read, or its beginning."""
+    return read if len(read) <= 60 else f"{read[:57]}..."
 
 
 def _where(place: list[str]) -> str:

@@ -16,7 +16,7 @@ from continuum_dyn.study import (
     StepResponseStudy,
 )
 from statics.arm import DiskNumber, Payload, PerDisk
-from statics.checked import STRICT, NonNegative, Positive, Vector
+from statics.checked import STRICT, Line, NonNegative, Positive, Vector
 
 
 class TableFile(BaseModel):
@@ -24,7 +24,7 @@ class TableFile(BaseModel):
 
     model_config = STRICT
     profile: str
-    file: str
+    file: Line
 
 
 def _drive_kind(value: Any) -> str:
@@ -85,7 +85,7 @@ class ArmTable(BaseModel):
     """[arm]: what is given beats the preset."""
 
     model_config = STRICT
-    preset: str | None = None
+    preset: Line | None = None
     disks: DiskNumber | None = None
     disk_spacing: PositiveEach | None = None
     youngs_modulus: PositiveEach | None = None
@@ -96,14 +96,14 @@ class ArmTable(BaseModel):
     disk_inertia: PositiveEach | None = None
     core_density: Positive | None = None
     reference_curvature: NumberEach | None = None
-    subsegments: int | str | None = None
+    subsegments: int | Line | None = None
 
 
 class CableTable(BaseModel):
     """One of [[cables]]: driven by its tension, or by its displacement with its stiffness."""
 
     model_config = STRICT
-    name: Annotated[str, Field(min_length=1, max_length=40)] | None = None
+    name: Annotated[Line, Field(min_length=1, max_length=40)] | None = None
     hole_offset: NumberEach
     anchor: DiskNumber | None = None
     tension: Tension | None = None
@@ -152,7 +152,7 @@ class ScenarioFile(BaseModel):
     """The whole file."""
 
     model_config = STRICT
-    title: Annotated[str, Field(max_length=200)] = ""
+    title: Line = ""
     arm: ArmTable
     base: BaseTable | None = None
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]

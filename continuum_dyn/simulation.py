@@ -24,6 +24,7 @@ from continuum_dyn.trajectory import Trajectory
 from statics.arc_length import follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
+from statics.interruption import Interruption, allowed, held
 from statics.outcome import Outcome
 from statics.ramp import limit_on_the_way, ramp
 
@@ -82,15 +83,21 @@ def simulate(
     ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion, by
     default those of the scenario's solver.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
-    kept. Whatever happens while solving is an outcome, not an exception.
+    kept. Whatever happens while solving is an outcome, not an exception, Ctrl-C too: what was computed by
+    then is in the run. Pressed again, it raises ``KeyboardInterrupt``.
     """
     if budget is None:
         budget = Budget(scenario.solver.max_steps, scenario.solver.max_seconds)
-    if scenario.chooses_mesh:
-        return _with_chosen_mesh(scenario, progress, budget)
-    if isinstance(scenario.study, MotionStudy):
-        return _motion(scenario, scenario.study, progress, budget)
-    return _statics(scenario)
+    with held() as interruption:
+        if scenario.chooses_mesh:
+            run = _with_chosen_mesh(scenario, progress, budget)
+        elif isinstance(scenario.study, MotionStudy):
+            run = _motion(scenario, scenario.study, progress, budget, interruption)
+        else:
+            run = _statics(scenario, interruption)
+        if run.outcome is Outcome.INTERRUPTED:
+            interruption.asked = False
+    return run
 
 
 def _with_chosen_mesh(scenario: Scenario, progress: Callable[[float], None] | None, budget: Budget) -> Run:
@@ -146,21 +153,25 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
     )
 
 
-def _statics(scenario: Scenario) -> Run:
-    solver = StaticSolver(scenario.scene)
+def _statics(scenario: Scenario, interruption: Interruption) -> Run:
+    try:
+        with allowed():
+            solver = StaticSolver(scenario.scene)
+            solver.warm_up()
+    except KeyboardInterrupt:
+        return _interrupted_early(scenario)
     if isinstance(scenario.study, RampStudy):
         inputs = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
         others = scenario.initial_tension[inputs.shape[1] :]
         inputs = np.hstack([inputs, np.tile(others, (len(inputs), 1))])
     else:
         inputs = scenario.initial_tension[None, :]
-    solver.warm_up()
     started = time.perf_counter()
     if isinstance(scenario.study, RampStudy) and scenario.study.path == "arc_length":
         path = follow(solver, inputs)
         solve_time = time.perf_counter() - started
         return Run(scenario, path.outcome, told_of_path(path), path.points, solve_time=solve_time)
-    points = ramp(solver, inputs)
+    points = ramp(solver, interruption.until_asked(inputs))
     solve_time = time.perf_counter() - started
     message, growths = told_of_points(points), [None] * len(points)
     if any(point.stable is None for point in points):
@@ -169,11 +180,13 @@ def _statics(scenario: Scenario) -> Run:
             points, growths = _judged(Dynamics(scenario.scene), points)
     outcome = Outcome.COMPLETED
     before: Equilibrium | None = None
-    for point, growth, asked in zip(points, growths, inputs, strict=True):
+    for point, growth, asked in zip(points, growths, inputs, strict=False):
         if point.outcome is not Outcome.COMPLETED:
             outcome, message = point.outcome, why(point, growth, _limit(solver, point, asked, before))
             break
         before = point
+    if len(points) < len(inputs):
+        outcome, message = Outcome.INTERRUPTED, f"interrupted after {len(points)} of {len(inputs)} points"
     return Run(scenario, outcome, message, points, solve_time=solve_time)
 
 
@@ -184,6 +197,10 @@ def _limit(
     if point.outcome is not Outcome.GEOMETRY_LIMIT:
         return None
     return limit_on_the_way(solver, inputs, before)
+
+
+def _interrupted_early(scenario: Scenario) -> Run:
+    return Run(scenario, Outcome.INTERRUPTED, "interrupted before anything was computed")
 
 
 def _judged(dynamics: Dynamics, points: list[Equilibrium]) -> tuple[list[Equilibrium], list[Growth | None]]:
@@ -203,11 +220,19 @@ def _settled_on(
 
 
 def _motion(
-    scenario: Scenario, study: MotionStudy, progress: Callable[[float], None] | None, budget: Budget
+    scenario: Scenario,
+    study: MotionStudy,
+    progress: Callable[[float], None] | None,
+    budget: Budget,
+    interruption: Interruption,
 ) -> Run:
-    statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
+    try:
+        with allowed():
+            statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
+            statics.warm_up()
+    except KeyboardInterrupt:
+        return _interrupted_early(scenario)
     stretches = spans(scenario.profiles, study.duration)
-    statics.warm_up()
     started = time.perf_counter()
     start = statics.solve(scenario.initial_tension)
     if not start.found:
@@ -215,18 +240,23 @@ def _motion(
         solve_time = time.perf_counter() - started
         return Run(scenario, start.outcome, why(start, None, limit), [start], solve_time=solve_time)
     y = dynamics.state(start.coordinates)
-    solver = _settled_on(scenario, study, dynamics, y, stretches)
-    warm_up(dynamics, solver, stretches[0])
+    try:
+        with allowed():
+            solver = _settled_on(scenario, study, dynamics, y, stretches)
+            warm_up(dynamics, solver, stretches[0])
+    except KeyboardInterrupt:
+        return Run(scenario, Outcome.INTERRUPTED, "interrupted before the motion began", [start])
     started = time.perf_counter()
     monitor = Monitor(
         inspect=inspector(dynamics),
         progress=None if progress is None else lambda t: progress(t / study.duration),
         budget=budget,
+        interruption=interruption,
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)
-    path = ramp(statics, moved.trajectory.inputs, start.coordinates) if study.static_path else []
+    path = _static_path(statics, moved.trajectory, start, monitor) if study.static_path else []
     solve_time = time.perf_counter() - started
     ends, growths = [start, end], [None, None]
     if why_not_judged(scenario.scene) is None:
@@ -262,6 +292,16 @@ def _end(
     x, y, _ = near.tip
     told = f"at another equilibrium than the one found from the start: tip at x {x:.4g} m, y {y:.4g} m"
     return near, told if end.found and tip_gap(near.tip, [end.tip]) > within else ""
+
+
+def _static_path(
+    statics: StaticSolver, trajectory: Trajectory, start: Equilibrium, monitor: Monitor
+) -> list[Equilibrium]:
+    """The equilibrium of every sample, or of those before Ctrl-C."""
+    path = ramp(statics, monitor.interruption.until_asked(trajectory.inputs), start.coordinates)
+    if len(path) < len(trajectory.inputs):
+        monitor.stop(Outcome.INTERRUPTED, f"interrupted after the motion, {len(path)} points on its path")
+    return path
 
 
 class _Moved(NamedTuple):

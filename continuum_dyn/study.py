@@ -17,6 +17,8 @@ from statics.scene import Scene
 
 MAX_STORED = 20_000_000
 """Most segments times samples that a log may hold."""
+MAX_SAMPLES = 10**12
+"""No log may hold so many; larger numbers are no numbers to reckon with."""
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -47,7 +49,7 @@ class MotionStudy:
     """
 
     duration: Positive
-    samples: Annotated[int, Field(ge=2)] = 1001
+    samples: Annotated[int, Field(ge=2, le=MAX_SAMPLES)] = 1001
     static_path: bool = False
     kind: Literal["motion"] = "motion"
 

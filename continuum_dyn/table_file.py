@@ -1,6 +1,7 @@
 """A profile kept in a CSV file beside the scenario."""
 
 import csv
+from itertools import islice
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -8,6 +9,8 @@ from pydantic import ValidationError
 from continuum_dyn.profiles import Table
 from continuum_dyn.text_file import read_text
 from statics.errors import InputError
+
+MAX_ROWS = 1_000_000
 
 
 def read_table(scenario: Path, name: str, quantity: str) -> Table:
@@ -19,7 +22,9 @@ def read_table(scenario: Path, name: str, quantity: str) -> Table:
     path = (folder / name).resolve()
     if not path.is_relative_to(folder):
         raise InputError(f"{quantity}: the table '{name}' lies outside the scenario's folder.")
-    rows = list(csv.reader(read_text(path).splitlines()))
+    if path.exists() and not path.is_file():
+        raise InputError(f"{quantity}: the table '{name}' is not a file.")
+    rows = _rows(name, read_text(path))
     if not rows or [cell.strip() for cell in rows[0]] != ["time", quantity]:
         found = ",".join(rows[0])[:60] if rows else "nothing"
         raise InputError(f"table '{name}': the first line must be time,{quantity}; read: {found}")
@@ -39,6 +44,17 @@ def read_table(scenario: Path, name: str, quantity: str) -> Table:
         detail = error.errors()[0]
         row = int(detail["loc"][-1]) + 1
         raise InputError(f"table '{name}', row {row}: {detail['msg']}; read {detail['input']!r}") from error
+
+
+def _rows(name: str, text: str) -> list[list[str]]:
+    """The cells of the header and of every row."""
+    try:
+        rows = list(islice(csv.reader(text.splitlines()), MAX_ROWS + 2))
+    except csv.Error as error:
+        raise InputError(f"table '{name}': not a CSV file: {error}.") from error
+    if len(rows) > MAX_ROWS + 1:
+        raise InputError(f"table '{name}': more than {MAX_ROWS} rows. Give fewer.")
+    return rows
 
 
 def _row(name: str, number: int, row: list[str]) -> tuple[float, float]:

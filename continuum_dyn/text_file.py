@@ -1,5 +1,6 @@
 """Text files read from disk: refused where they are missing, too large or not text."""
 
+import io
 from pathlib import Path
 
 from statics.errors import InputError, did_you_mean
@@ -10,9 +11,11 @@ MAX_FILE_SIZE = 50_000_000
 def read_text(path: Path) -> str:
     """The file's text. Raises ``InputError`` that names the file and, if it is missing, its neighbours."""
     try:
-        if path.stat().st_size > MAX_FILE_SIZE:
+        with path.open("rb") as file:
+            content = file.read(MAX_FILE_SIZE + 1)
+        if len(content) > MAX_FILE_SIZE:
             raise InputError(f"{path}: larger than {MAX_FILE_SIZE // 1_000_000} MB.")
-        return path.read_text(encoding="utf-8")
+        return io.TextIOWrapper(io.BytesIO(content), encoding="utf-8").read()
     except FileNotFoundError as error:
         known = [p.name for p in sorted(path.parent.glob("*.toml"))] if path.parent.is_dir() else []
         hint = did_you_mean(path.name, known) if known else ""

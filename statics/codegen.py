@@ -8,13 +8,9 @@ warm start finds its kernel by a hash and imports neither sympy nor the derivati
 """
 
 import hashlib
-import importlib.util
 import inspect
-import os
 import platform
-import stat
 import sys
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -23,10 +19,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from platformdirs import user_cache_path
-
 from statics.effects import Effect
-from statics.errors import KernelCacheError
+from statics.kernel_files import kernel_folder, read_sealed, write_sealed
 from statics.scene import Scene
 
 _HERE = Path(__file__).parent
@@ -48,7 +42,7 @@ DERIVATION = tuple(
 )
 """The sources that every kernel is made from."""
 
-_loaded: dict[str, ModuleType] = {}
+_loaded: dict[Path, ModuleType] = {}
 
 
 @dataclass(frozen=True)
@@ -69,19 +63,23 @@ def load(scene: Scene, recipe: Recipe) -> Any:
 
     Raises ``KernelCacheError`` if the cache folder cannot be used safely.
     """
-    key = kernel_key(scene, recipe)
-    if key not in _loaded:
-        _loaded[key] = _import(f"{recipe.kind}_{key}", _kept_text(scene, recipe, key))
-    return _loaded[key]
+    path = _path(scene, recipe)
+    if path not in _loaded:
+        _loaded[path] = _module(path, _kept_text(scene, recipe, path))
+    return _loaded[path]
 
 
 def load_interpreted(scene: Scene, recipe: Recipe) -> Any:
     """The same functions as plain Python: for tests, for a debugger, and for what is asked only once."""
-    text = _kept_text(scene, recipe, kernel_key(scene, recipe)).read_text(encoding="utf-8")
+    text = _kept_text(scene, recipe, _path(scene, recipe))
     text = text.replace("from numba import njit\n", "njit = lambda **_: lambda function: function\n")
     module = ModuleType(f"interpreted_{recipe.kind}")
     exec(compile(text, module.__name__, "exec"), module.__dict__)
     return module
+
+
+def _path(scene: Scene, recipe: Recipe) -> Path:
+    return kernel_folder() / f"{recipe.kind}_{kernel_key(scene, recipe)}.py"
 
 
 def kernel_key(scene: Scene, recipe: Recipe) -> str:
@@ -114,66 +112,22 @@ def _versions() -> list[str]:
     return [platform.python_version(), *(version(name) for name in ("numba", "numpy", "sympy"))]
 
 
-def kernel_folder() -> Path:
-    """Folder of the generated kernels: ``CONTINUUM_DYN_CACHE``, or the user's own cache folder.
-
-    Raises ``KernelCacheError`` where others could write to it: kernels are code.
-    """
-    named = os.environ.get("CONTINUUM_DYN_CACHE")
-    folder = Path(named) if named else user_cache_path("continuum-dyn") / "kernels"
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        status = folder.stat()
-    except OSError as error:
-        raise KernelCacheError(
-            f"cannot make the folder for generated kernels, {folder}: {error.strerror}. "
-            "Name another with the environment variable CONTINUUM_DYN_CACHE."
-        ) from error
-    if os.name == "posix" and (
-        status.st_uid != os.getuid() or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-    ):
-        raise KernelCacheError(
-            f"the folder for generated kernels, {folder}, may be written to by others, and kernels are code. "
-            f"Try: chmod 700 {folder}, or name another with the environment variable CONTINUUM_DYN_CACHE."
-        )
-    return folder
+def _kept_text(scene: Scene, recipe: Recipe, path: Path) -> str:
+    """The kernel's text from its file; made, or made again if it is not what was once written."""
+    kept = read_sealed(path)
+    if kept is None:
+        kept = recipe.write(scene).encode()
+        write_sealed(path, kept)
+    return kept.decode()
 
 
-def _kept_text(scene: Scene, recipe: Recipe, key: str) -> Path:
-    """The kernel's file; made, or made again if it is not what was once written."""
-    path = kernel_folder() / f"{recipe.kind}_{key}.py"
-    if not _is_whole(path):
-        _write_atomically(path, _sealed(recipe.write(scene)))
-    return path
+def _module(path: Path, text: str) -> ModuleType:
+    """The kernel made from the text that was checked, not from what its file may hold by now."""
+    from statics.compiled_code import keep_compiled
 
-
-def _sealed(text: str) -> str:
-    return f"# sha256 of what follows: {hashlib.sha256(text.encode()).hexdigest()}\n{text}"
-
-
-def _is_whole(path: Path) -> bool:
-    try:
-        sealed = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return False
-    return sealed == _sealed(sealed.partition("\n")[2])
-
-
-def _write_atomically(path: Path, text: str) -> None:
-    try:
-        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        Path(name).replace(path)
-    except OSError as error:
-        raise KernelCacheError(f"cannot write the generated kernel {path}: {error.strerror}.") from error
-
-
-def _import(name: str, path: Path) -> ModuleType:
-    specification = importlib.util.spec_from_file_location(name, path)
-    if specification is None or specification.loader is None:
-        raise KernelCacheError(f"cannot import the generated kernel {path}.")
-    module = importlib.util.module_from_spec(specification)
-    sys.modules[name] = module
-    specification.loader.exec_module(module)
+    module = ModuleType(path.stem)
+    module.__file__ = str(path)
+    sys.modules[path.stem] = module  # where numba looks for a function's globals
+    exec(compile(text, path, "exec"), module.__dict__)
+    keep_compiled(module, path, hashlib.sha256(text.encode()).hexdigest())
     return module

@@ -33,7 +33,7 @@ import math
 import numpy as np
 from numba import njit
 
-compiled = njit(cache=True, error_model="numpy", nogil=True)
+compiled = njit(error_model="numpy", nogil=True)
 inlined = njit(inline="always", error_model="numpy")'''
 
 OPTIONAL = {"measure_cables", "measure_moving_cables", "measure_changes", "count_held"}

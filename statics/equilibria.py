@@ -187,6 +187,8 @@ class StaticSolver:
         arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         elastic, gravity, residual, negative = self.kernel.examine(q, inputs, self.segments, self.disks, pose)
+        if not (np.isfinite([elastic, gravity, residual]).all() and np.isfinite(pose).all()):
+            ended = search.NOT_FOUND
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         return Equilibrium(

@@ -110,7 +110,7 @@ def test_modes_know_what_drives_the_scene(shaken: Scenario) -> None:
 
 
 def test_ramp_takes_no_profile_of_a_factor(shaken: Scenario) -> None:
-    with pytest.raises(InputError, match="one number for each load factor"):
+    with pytest.raises(InputError, match="lists of tensions and load factors"):
         replace(shaken, study=RampStudy(), tension=((0.0, 1.0),))
 
 
@@ -124,7 +124,7 @@ def test_scene_without_driven_loads_has_none_in_its_kernel(shaken: Scenario) -> 
     [
         ("disk = 4", "disk = 5", "load on disk 5: beyond the arm"),
         ('"sine", mean', '"sinus", mean', "'sine'"),
-        ('{ profile = "sine", mean = 0.0, amplitude = 1.0, frequency = 20.0 }', "[1.0, 2.0]", "factor list"),
+        ('{ profile = "sine", mean = 0.0, amplitude = 1.0, frequency = 20.0 }', "[1.0, 2.0]", "a list for factor"),
         ('"sine", mean = 0.0, amplitude = 1.0, frequency = 20.0', '"table", file = "no.csv"', "no such file"),
         ("factor =", "factr =", "'factor'"),
     ],

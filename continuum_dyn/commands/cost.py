@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.show import length, make_folder, plain_table, with_status
+from statics.interruption import held
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,10 +36,11 @@ def cost(
     make_folder(out)
     measured = with_status(scenario.title, lambda progress: measure(scenario, progress))
     stem = out / f"{file.stem}_cost"
-    _write_csv(measured, stem.with_suffix(".csv"))
-    _write_mesh_csv(measured, out / f"{file.stem}_cost_mesh.csv")
-    write_cost(measured, stem.with_suffix(".h5"))
-    plots.cost(measured).savefig(stem.with_suffix(".png"), dpi=130)
+    with held():
+        _write_csv(measured, stem.with_suffix(".csv"))
+        _write_mesh_csv(measured, out / f"{file.stem}_cost_mesh.csv")
+        write_cost(measured, stem.with_suffix(".h5"))
+        plots.cost(measured).savefig(stem.with_suffix(".png"), dpi=130)
     _show(measured)
     typer.echo(f"written: {stem}.csv, _mesh.csv, .h5, .png")
 

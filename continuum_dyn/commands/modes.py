@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.show import make_folder, mode_row, plain_table
+from statics.interruption import held
 
 if TYPE_CHECKING:
     from continuum_dyn.modes import RestModes
@@ -45,8 +46,9 @@ def modes(
     make_folder(out)
     found = modes_at_rest(scenario)
     stem = out / f"{file.stem}_modes"
-    _write_csv(found, stem.with_suffix(".csv"))
-    plots.modes(found).savefig(stem.with_suffix(".png"), dpi=130)
+    with held():
+        _write_csv(found, stem.with_suffix(".csv"))
+        plots.modes(found).savefig(stem.with_suffix(".png"), dpi=130)
     _show(found)
     typer.echo(f"written: {stem}.csv, .png")
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.show import make_folder, plain_table
+from statics.interruption import held
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,9 +30,10 @@ def reproduce(
 
     found = compute(paper)
     make_folder(out)
-    _write_table_2(found, out / f"{paper}_table_2.csv")
-    _write_shapes(found, out / f"{paper}_shapes.csv")
-    plots.rone2012(found).savefig(out / f"{paper}.png", dpi=130)
+    with held():
+        _write_table_2(found, out / f"{paper}_table_2.csv")
+        _write_shapes(found, out / f"{paper}_shapes.csv")
+        plots.rone2012(found).savefig(out / f"{paper}.png", dpi=130)
     _show(found)
     typer.echo(f"written: {out / paper}_table_2.csv, _shapes.csv, .png")
 

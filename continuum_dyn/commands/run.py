@@ -12,6 +12,7 @@ import typer
 
 from continuum_dyn.commands.show import length, make_folder
 from statics.errors import InputError
+from statics.interruption import held
 
 if TYPE_CHECKING:
     from continuum_dyn.simulation import Run
@@ -44,11 +45,12 @@ def run(
     make_folder(out)
     statuses = []
     for path, scenario in scenarios:
-        report = _answer(path, scenario, out, quiet=as_json)
-        if as_json:
-            typer.echo(json.dumps(report["record"]))
-        else:
-            _show(report)
+        with held():  # so that what was computed is logged
+            report = _answer(path, scenario, out, quiet=as_json)
+            if as_json:
+                typer.echo(json.dumps(report["record"]))
+            else:
+                _show(report)
         statuses.append(report["run"].outcome.exit_status)
         if statuses[-1] > 1:
             break

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from statics.errors import LogError
+from statics.interruption import held
 
 if TYPE_CHECKING:
     from continuum_dyn.modes import Mode
@@ -39,9 +40,10 @@ def make_folder(folder: Path) -> None:
     """Make the folder, or raise ``LogError`` if nothing can be written there."""
     probe = folder / ".writable"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe.touch()
-        probe.unlink()
+        with held():
+            folder.mkdir(parents=True, exist_ok=True)
+            probe.touch()
+            probe.unlink()
     except OSError as error:
         raise LogError(
             f"cannot write to the folder {folder}: {error.strerror}. Name another with --out."

@@ -4,7 +4,7 @@ from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 
 from continuum_dyn.integrators.chain_solver import ChainSolver
 from continuum_dyn.integrators.choice import Choice, check, choose
-from continuum_dyn.integrators.guard import Budget, Guard, Monitor, interruptible
+from continuum_dyn.integrators.guard import Budget, Guard, Monitor
 from continuum_dyn.integrators.midpoint_solver import MidpointSolver
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, Tableau
 
@@ -36,5 +36,4 @@ __all__ = [
     "Monitor",
     "check",
     "choose",
-    "interruptible",
 ]

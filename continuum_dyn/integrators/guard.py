@@ -4,11 +4,8 @@ SciPy's solvers have none of these. A guarded one fails at the first step that b
 ``Monitor`` knows why.
 """
 
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +13,7 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from continuum_dyn.study import Solver
+from statics.interruption import Interruption
 from statics.outcome import Outcome
 
 
@@ -41,7 +39,7 @@ class Monitor:
     steps: int = 0
     rejections: int = 0
     started: float = field(default_factory=time.monotonic)
-    interrupted: bool = False
+    interruption: Interruption = field(default_factory=Interruption)
     reached: tuple[float, np.ndarray] = (0.0, np.zeros(0))
     outcome: Outcome | None = None
     message: str = ""
@@ -59,7 +57,7 @@ class Monitor:
         if found is not None:
             return self.stop(*found)
         self.reached = (t, y)
-        if self.interrupted:
+        if self.interruption.asked:
             return self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
         if self.steps >= self.budget.steps:
             return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.steps} steps taken by t = {t:.6g} s")
@@ -102,22 +100,3 @@ class Guard(OdeSolver):
             self.status = "failed"
             return objection
         return message
-
-
-@contextmanager
-def interruptible(monitor: Monitor) -> Iterator[None]:
-    """Ctrl-C ends the run after the step under way; pressed again, at once."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    previous = signal.getsignal(signal.SIGINT)
-
-    def on_interrupt(_signal: int, _frame: object) -> None:
-        monitor.interrupted = True
-        signal.signal(signal.SIGINT, previous)
-
-    signal.signal(signal.SIGINT, on_interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)

@@ -19,6 +19,7 @@ import rerun.blueprint as rrb
 from continuum_dyn.record import Log
 from continuum_dyn.views.backbone import backbone, poses
 from statics.errors import LogError
+from statics.interruption import held
 from statics.quantities import QUANTITIES
 
 APPLICATION = "continuum-dyn"
@@ -101,13 +102,15 @@ def save(log: Log, path: Path) -> None:
     """
     content = _recording(log)
     part = path.with_name(path.name + ".part")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink()
-        raise LogError(f"cannot write the recording {path}: {error.strerror or error}.") from error
+    with held():
+        try:
+            part.write_bytes(content)
+            part.replace(path)
+        except OSError as error:
+            raise LogError(f"cannot write the recording {path}: {error.strerror or error}.") from error
+        finally:
+            with suppress(OSError):
+                part.unlink()
 
 
 def show(log: Log) -> None:

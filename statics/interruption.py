@@ -1,0 +1,93 @@
+"""Ctrl-C, where it must wait: while a file is written, or while there is something to be kept first."""
+
+import signal
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TypeVar
+
+Item = TypeVar("Item")
+
+
+@dataclass
+class Interruption:
+    """Whether Ctrl-C was pressed and not answered yet, and whether it raises where it is pressed."""
+
+    asked: bool = False
+    raises: bool = False
+
+    def raise_if_asked(self) -> None:
+        """Answer by ``KeyboardInterrupt``."""
+        if self.asked:
+            self.asked = False
+            raise KeyboardInterrupt
+
+    def until_asked(self, items: Iterable[Item]) -> Iterator[Item]:
+        """The items, or those that come before Ctrl-C is pressed."""
+        for item in items:
+            if self.asked:
+                return
+            yield item
+
+
+_held: Interruption | None = None
+
+
+@contextmanager
+def held() -> Iterator[Interruption]:
+    """Ctrl-C waits for the end of the block; pressed again, it raises at once.
+
+    Code within may look at ``asked``, end early, and clear it once it has answered.
+    """
+    if _held is not None and threading.current_thread() is threading.main_thread():
+        yield from _nested(_held, raises=False)
+    else:
+        yield from _outermost()
+
+
+@contextmanager
+def allowed() -> Iterator[Interruption]:
+    """Within what holds it, Ctrl-C raises ``KeyboardInterrupt``, also if it was pressed before."""
+    if _held is None or threading.current_thread() is not threading.main_thread():
+        yield Interruption()
+    else:
+        _held.raise_if_asked()
+        yield from _nested(_held, raises=True)
+
+
+def _nested(interruption: Interruption, raises: bool) -> Iterator[Interruption]:
+    before, interruption.raises = interruption.raises, raises
+    try:
+        yield interruption
+    except KeyboardInterrupt:
+        interruption.asked = False
+        raise
+    finally:
+        interruption.raises = before
+    if before or raises:  # what the block has swallowed, or held
+        interruption.raise_if_asked()
+
+
+def _outermost() -> Iterator[Interruption]:
+    global _held
+    interruption = Interruption()
+    previous = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(previous):
+        yield interruption
+        return
+
+    def on_interrupt(_signal: int, _frame: object) -> None:
+        again, interruption.asked = interruption.asked, True
+        if again or interruption.raises:
+            raise KeyboardInterrupt
+
+    _held = interruption
+    signal.signal(signal.SIGINT, on_interrupt)
+    try:
+        yield interruption
+    finally:
+        _held = None
+        signal.signal(signal.SIGINT, previous)
+        if interruption.asked:
+            previous(signal.SIGINT, None)

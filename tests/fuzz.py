@@ -1,0 +1,129 @@
+"""Mutants of the scenarios, loaded and run: ``python tests/fuzz.py --count 1000000 --seed 0``.
+
+Every mutant must load or be refused with an ``InputError``. Those that load, and whose kernels are those of
+the scenarios named in ``WARM``, are run with a small budget, and their logs written and read back. A mutant
+that ends in any other way, takes longer than ``SECONDS`` or needs more memory than ``MEMORY`` is printed, and
+the exit status is 1.
+"""
+
+import argparse
+import faulthandler
+import resource
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter
+from pathlib import Path
+from random import Random
+
+from scenario_mutants import mutant, spoiled
+
+from continuum_dyn import load_scenario, simulate
+from continuum_dyn.integrators import Budget
+from continuum_dyn.record import read_log, write_log
+from statics import InputError, codegen
+
+SCENARIOS = Path(__file__).parents[1] / "scenarios"
+TABLE = SCENARIOS / "slow_ramp.csv"
+WARM = ("step_response", "tension_ramp", "unactuated", "step_response_payload")
+BUDGET = Budget(steps=100, seconds=1.0)
+SECONDS = 20
+"""Longest time that one mutant may take."""
+MEMORY = 4_000_000_000
+"""Most address space of the whole program, bytes."""
+MAX_SHOWN = 10
+
+
+class NotCachedError(Exception):
+    """The mutant's kernel would have to be made."""
+
+
+class TooSlowError(Exception):
+    """A mutant took longer than it may."""
+
+
+def outcome_of(text: str, folder: Path) -> str:
+    """How a mutant ended, in a word. Raises what it should not."""
+    path = folder / "mutant.toml"
+    path.write_text(text, encoding="utf-8", newline="", errors="surrogatepass")
+    try:
+        scenario = load_scenario(path)
+    except InputError as error:
+        if len(str(error).splitlines()) > 20 or max(map(len, str(error).splitlines())) > 1000:
+            raise AssertionError(f"more than a screen: {str(error)[:2000]}") from error
+        return "refused"
+    try:
+        run = simulate(scenario, budget=BUDGET)
+    except NotCachedError:
+        return "loaded"
+    except InputError:
+        return "refused when run"
+    write_log(run, folder / "mutant.h5")
+    read_log(folder / "mutant.h5")
+    return f"run: {run.outcome}"
+
+
+def warm_up() -> None:
+    """Load the kernels of ``WARM``; from here on no other is made."""
+    for name in WARM:
+        simulate(load_scenario(SCENARIOS / f"{name}.toml"))
+
+    def refuse(*_arguments: object) -> Path:
+        raise NotCachedError
+
+    codegen._kept_text = refuse
+
+
+def fuzz(count: int, seed: int) -> int:
+    """Try so many mutants; prints what they came to, and returns the number of failures."""
+    texts = [path.read_text() for path in sorted(SCENARIOS.glob("*.toml"))]
+    table = TABLE.read_text()
+    found, failures, slowest, started = Counter[str](), Counter[str](), 0.0, time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(count):
+            rng = Random(f"{seed} {number}")
+            text = mutant(rng, texts)
+            (Path(folder) / TABLE.name).write_text(spoiled(rng, table) if rng.random() < 0.5 else table)
+            faulthandler.dump_traceback_later(5 * SECONDS, exit=True)
+            signal.alarm(SECONDS)
+            before = time.monotonic()
+            try:
+                found[outcome_of(text, Path(folder))] += 1
+            except Exception:
+                told = traceback.format_exc()
+                kind = "\n".join(told.splitlines()[-4:])[-300:]
+                failures[kind] += 1
+                if failures[kind] == 1 and len(failures) <= MAX_SHOWN:
+                    print(f"--- seed {seed}, mutant {number}\n{text[:2000]}\n{told[-2000:]}", flush=True)
+            finally:
+                signal.alarm(0)
+            slowest = max(slowest, time.monotonic() - before)
+    faulthandler.cancel_dump_traceback_later()
+    seconds, peak = time.monotonic() - started, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+    print(f"{count} mutants of seed {seed} in {seconds:.0f} s, the slowest {slowest:.2g} s,")
+    print(f"at most {peak:.0f} MB, {failures.total()} failures")
+    for outcome, times in found.most_common():
+        print(f"  {outcome:28} {times}")
+    return failures.total()
+
+
+def main() -> int:
+    """Exit status: 1 if any mutant failed."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=0)
+    asked = parser.parse_args()
+
+    def too_slow(_signal: int, _frame: object) -> None:
+        raise TooSlowError
+
+    signal.signal(signal.SIGALRM, too_slow)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    warm_up()
+    return int(fuzz(asked.count, asked.seed) > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
