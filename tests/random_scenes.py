@@ -262,12 +262,20 @@ def powers(case: Case) -> np.ndarray:
 
 def holds_in(*kinds: Callable[[Draw], Scene], **drawn: st.SearchStrategy[Any]) -> Callable[..., Any]:
     """Make a test of a claim on a case and what is drawn with it: on each kind, with few examples or many."""
+    return _at_both_depths({kind.__name__: {"case": cases(kind)} | drawn for kind in kinds})
 
+
+def holds_for(**drawn: st.SearchStrategy[Any]) -> Callable[..., Any]:
+    """Make a test of a claim on what is drawn, with few examples or many."""
+    return _at_both_depths({"any": drawn})
+
+
+def _at_both_depths(by_name: dict[str, dict[str, st.SearchStrategy[Any]]]) -> Callable[..., Any]:
     def to_test(claim: Callable[..., None]) -> Callable[..., None]:
-        @pytest.mark.parametrize("kind", kinds, ids=lambda kind: kind.__name__)
+        @pytest.mark.parametrize("name", by_name)
         @pytest.mark.parametrize("examples", [FEW, pytest.param(MANY, marks=pytest.mark.slow)])
-        def test(kind: Callable[[Draw], Scene], examples: int) -> None:
-            settings(max_examples=examples)(given(case=cases(kind), **drawn)(claim))()
+        def test(name: str, examples: int) -> None:
+            settings(max_examples=examples)(given(**by_name[name])(claim))()
 
         test.__name__, test.__doc__ = claim.__name__, claim.__doc__
         return test
