@@ -124,7 +124,11 @@ def test_scene_without_driven_loads_has_none_in_its_kernel(shaken: Scenario) -> 
     [
         ("disk = 4", "disk = 5", "load on disk 5: beyond the arm"),
         ('"sine", mean', '"sinus", mean', "'sine'"),
-        ('{ profile = "sine", mean = 0.0, amplitude = 1.0, frequency = 20.0 }', "[1.0, 2.0]", "a list for factor"),
+        (
+            '{ profile = "sine", mean = 0.0, amplitude = 1.0, frequency = 20.0 }',
+            "[1.0, 2.0]",
+            "a list for factor",
+        ),
         ('"sine", mean = 0.0, amplitude = 1.0, frequency = 20.0', '"table", file = "no.csv"', "no such file"),
         ("factor =", "factr =", "'factor'"),
     ],

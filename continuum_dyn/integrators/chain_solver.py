@@ -20,6 +20,11 @@ FIRST_PART = 0.01
 LEAST_ROUNDINGS = 100.0
 """Of the time: a step after a span of one or two of them is as long as so many."""
 
+CORNER_STEP = 0.1
+"""First step after a corner of an input, at most, in radians of the arm's lowest frequency."""
+SAME_SLOPE = 1e-9
+"""Relative difference below which two slopes of an input are one."""
+
 
 class ChainSolver(OdeSolver):
     """ESDIRK on the chain, O(n) a stage, error in metres: for ``solve_ivp(..., method=ChainSolver)``.
@@ -54,6 +59,7 @@ class ChainSolver(OdeSolver):
         self.spans, self.span = spans, 0
         self.tableau = tableau
         self.tolerance = tolerance
+        self.corner_step = CORNER_STEP / dynamics.frequency
         shape = (BATCH + 1, dynamics.scene.arm.segments, dynamics.dofs)
         self.records = (
             np.empty(shape[0]),
@@ -96,8 +102,14 @@ class ChainSolver(OdeSolver):
         return True, None
 
     def _enter_next_span(self, row: int) -> None:
-        """A span of next to no length may have been a jump: no step is much longer than the one before."""
+        """Steps begin anew in size where a slope changes: what that sets swinging is seen between them, too.
+
+        A span of next to no length may have been a jump: no step is much longer than the one before.
+        """
         self.span += 1
+        slope, slope_before = (self.spans[span].pieces[:, 2] for span in (self.span, self.span - 1))
+        if np.any(np.abs(slope - slope_before) > SAME_SLOPE * (np.abs(slope) + np.abs(slope_before))):
+            self.next_step = min(self.next_step, self.corner_step)
         if row > 0:
             t, before = self.records[0][row], self.records[0][row - 1]
             most = max(MOST_GROWTH * (t - before), LEAST_ROUNDINGS * np.spacing(t))
