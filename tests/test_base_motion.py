@@ -168,6 +168,7 @@ def test_midpoint_rule_keeps_its_order_where_the_base_moves() -> None:
 # ---- scenarios ----
 
 
+@pytest.mark.slow
 def test_arm_moved_along_settles_where_the_statics_find_it(shaken: Scenario) -> None:
     """20 cm along and a quarter turn: the same scene, another motion of the base."""
     there = replace(

@@ -109,6 +109,7 @@ def test_mass_of_the_arm_is_that_of_disks_core_and_payloads() -> None:
 # ---- its weight ----
 
 
+@pytest.mark.slow
 def test_cantilever_sags_under_its_own_weight_by_the_beams_formula() -> None:
     """Q L^4 / (8 E J) and an end slope of q L^3 / (6 E J) (Timoshenko 1955, art. 21), for a small load.
 

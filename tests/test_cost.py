@@ -82,6 +82,7 @@ def test_meshes_are_held_against_the_exact_rod(prices: cost.Cost) -> None:
     assert four.segment_evaluations % 16 == 0
 
 
+@pytest.mark.slow
 def test_scene_that_the_exact_rod_does_not_know_has_no_meshes(
     brief: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:

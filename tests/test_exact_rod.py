@@ -263,6 +263,7 @@ def test_upright_core_buckles_under_7_84_e_j_over_its_length_squared() -> None:
         exact_rod(heavy_core(4, upright, weight=10.0))
 
 
+@pytest.mark.slow
 def test_segments_of_an_arm_with_everything_on_it_tend_to_the_rod_with_second_order() -> None:
     arm = replace(CROWDED.arm, core_density=1e5)
     rod = exact_rod(Scene(arm, CROWDED.effects), CROWDED_TENSION).tip

@@ -259,6 +259,7 @@ def test_exact_rod_refuses_followers() -> None:
 # ---- scenarios: from the file to the verdict ----
 
 
+@pytest.mark.slow
 def test_jet_settles_further_round_than_a_force_that_keeps_its_direction(tmp_path: Path) -> None:
     jet = simulate(load_scenario(JET))
     dead = equilibrium(edited(JET, tmp_path, ("follower = true", "follower = false")).scene)

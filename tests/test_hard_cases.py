@@ -20,6 +20,7 @@ from statics import InputError, Outcome
 HARD = SCENARIOS / "hard"
 SLOW = {
     "a_step_every_5_ms",
+    "cables_that_go_slack_and_catch",
     "disks_without_rotary_inertia",
     "friction_that_sticks_and_slips",
     "payload_of_a_million_disks",

@@ -188,6 +188,7 @@ def test_many_equal_disks_swing_like_a_cantilever_beam() -> None:
     np.testing.assert_allclose(2 * fine - coarse, CANTILEVER, rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_core_with_mass_swings_like_a_cantilever_beam() -> None:
     coarse, fine = roots(beam(20, core=1.0 - 1e-12)), roots(beam(40, core=1.0 - 1e-12))
     assert (fine > CANTILEVER).all()  # arcs are some of the beam's shapes: from above (Rayleigh)

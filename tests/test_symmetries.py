@@ -85,6 +85,7 @@ def test_mirrored_arm_rests_in_the_mirror(case: Case) -> None:
 
 
 @holds_in(*KINDS)
+@pytest.mark.slow
 def test_mirrored_arm_moves_in_the_mirror(case: Case) -> None:
     mirrored, signs = changed(case, mirror), [mirror(name) for name in case.scene.coordinates]
     np.testing.assert_array_equal(accelerations(mirrored), accelerations(case) * signs)
