@@ -25,7 +25,7 @@ def under_a_moment(spacings: list[float], moment: float, curvature: float, **tra
     load = DiskLoad(arm.disks, moment=moment)
     scene = Scene(arm, (Bending(), Extension(), DiskLoads((load,))))
     nothing = np.zeros((arm.segments, 2))
-    pose = dict(zip(("base_x", "base_y", "base_theta"), arm.base_pose, strict=True))
+    pose: dict[str, float] = dict(zip(("base_x", "base_y", "base_theta"), arm.base_pose, strict=True))
     return Case(scene, pose, nothing, nothing)
 
 
