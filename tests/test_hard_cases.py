@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -40,7 +41,7 @@ def numbers(path: Path) -> list[np.ndarray]:
     """Every dataset of numbers in a log."""
     found: list[np.ndarray] = []
 
-    def visit(_name: str, item: object) -> None:
+    def visit(_name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":
             found.append(item[()])
 
