@@ -69,12 +69,12 @@ def judge(
 
     An other has ``patience`` (s) for its run; ``told`` is called with what is going on.
     """
-    claiming = tuple(case.expect.steps)
+    claiming: tuple[Method, ...] = tuple(case.expect.steps)
     told(f"{case.name}: reference")
     reference = _reference(case, claiming[0])
     verdicts = []
-    methods: list[Method] = [*claiming, *(other for other in others if other not in claiming)]
-    for method in methods:
+    order: list[Method] = [*claiming, *(other for other in others if other not in claiming)]
+    for method in order:
         told(f"{case.name}: {method}")
         seconds = case.scenario.solver.max_seconds
         if method not in claiming:

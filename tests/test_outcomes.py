@@ -3,13 +3,15 @@
 import os
 import signal
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ANY_METHOD, moving, rone2012
+from conftest import ANY_METHOD, MOTION, moving, rone2012
 
 from continuum_dyn import Run, Scenario, simulate
 from continuum_dyn.dynamics import Dynamics, Observation
+from continuum_dyn.effects import MaterialDamping
 from continuum_dyn.integrators import Budget
 from continuum_dyn.profiles import Constant, Profile, Span, Step
 from continuum_dyn.study import Method, MotionStudy, RampStudy, Solver, StepResponseStudy
@@ -70,6 +72,40 @@ def test_budget_of_steps_ends_the_run() -> None:
     assert run.outcome is Outcome.BUDGET_EXCEEDED
     assert "20 steps" in run.message
     assert_kept(run, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("bound", "told"), [({"max_steps": 20}, "20 steps"), ({"max_seconds": 1e-9}, "1e-09 s")]
+)
+def test_budgets_of_the_scenario_end_the_run(bound: dict[str, Any], told: str) -> None:
+    scenario = replace(step_to(1.0), solver=Solver("LSODA", **bound))
+    run = simulate(scenario)
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert told in run.message
+    assert_kept(run, 0.05)
+
+
+def test_run_that_is_stopped_keeps_every_sample_up_to_there() -> None:
+    """All of its steps are one batch, which the budget ends."""
+    run = simulate(step_to(1.0, method="chain"), budget=Budget(steps=20))
+    assert run.trajectory is not None
+    end = run.trajectory.time[-1]
+    expected = np.linspace(0.0, 0.05, 51)
+    np.testing.assert_array_equal(run.trajectory.time[:-1], expected[expected < end])
+    assert run.trajectory.time.size > 2
+
+
+@pytest.mark.parametrize(("tension", "side"), [(0.10, 1.0), (0.16, -1.0)])
+def test_upright_arm_settles_on_the_side_that_it_falls_to_and_says_which(tension: float, side: float) -> None:
+    """Beyond its buckling load it rests on either; let go from far enough it swings over to the other one."""
+    plain = rone2012(stiffness=1 / 250, gravity=(-9.81, 0.0)).without("extension")
+    scene = Scene(plain.arm, (*plain.effects, *MOTION[:2], MaterialDamping(retardation_time=1e-2)))
+    study = StepResponseStudy(20.0, samples=201)
+    run = simulate(Scenario(scene, (Step(before=tension, after=0.0),), study, Solver("chain")))
+    assert run.outcome is Outcome.SETTLED
+    assert run.tip is not None
+    assert run.tip[1] == pytest.approx(side * 62.948e-3, abs=1e-5)
+    assert ("another equilibrium" in run.message) == (side < 0)
 
 
 def test_budget_of_seconds_ends_the_run() -> None:

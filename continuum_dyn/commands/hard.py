@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.show import duration, length, plain_table, with_status
+from continuum_dyn.commands.show import duration, length, with_status
 from statics.errors import InputError, LogError
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ CSV_COLUMNS = (
     *("case", "method", "claimed", "outcome", "tip_error", "steps", "segment_evaluations"),
     *("solve_time", "missed"),
 )
+ROW = "  {:<9} {:<20} {:>9} {:>8} {:>8} {:>8} {:>7}"
+"""A verdict's line on a terminal, below its case."""
 SUFFIXES = (".md", ".csv")
 
 
@@ -110,18 +112,17 @@ def _count(value: int | None) -> str:
 
 
 def _show(verdicts: "Iterable[Verdict]") -> None:
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    table, last = plain_table("", *COLUMNS), ""
+    typer.echo(ROW.format(*COLUMNS[1:]))
+    last = ""
     for verdict in verdicts:
-        table.add_row("" if verdict.case == last else verdict.case, *_row(verdict))
+        if verdict.case != last:
+            typer.echo(verdict.case)
+        typer.echo(ROW.format(*_row(verdict)).rstrip())
         last = verdict.case
-    console.print(table)
-    console.print("Error of the tip against a much tighter run; work in segment evaluations.")
+    typer.echo("\nError of the tip against a much tighter run; work in segment evaluations.")
     for verdict in verdicts:
         if verdict.claimed and verdict.missed:
-            console.print(f"{verdict.case}, {verdict.method}: {'; '.join(verdict.missed)}", markup=False)
+            typer.echo(f"{verdict.case}, {verdict.method}: {'; '.join(verdict.missed)}")
 
 
 def _markdown(cases: "Iterable[HardCase]", verdicts: "Sequence[Verdict]") -> str:
