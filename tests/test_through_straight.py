@@ -25,8 +25,8 @@ def scene(disks: int, load: str, stiffness: float = 0.0) -> Scene:
     """An arm under one unit load; ``stiffness`` is EJ / L0 in N m and, times L0^2, EA / L0."""
     force = {"x": (1.0, 0.0), "y": (0.0, 1.0)}.get(load, (0.0, 0.0))
     cables = (Cable("one", OFFSET),) if load == "cable" else ()
-    core = {"area": stiffness / LENGTH or TINY, "second_moment": stiffness * LENGTH or TINY}
-    arm = Arm(disks, LENGTH, youngs_modulus=1.0 if stiffness else TINY, cables=cables, **core)
+    modulus, area, second = (1.0, stiffness / LENGTH, stiffness * LENGTH) if stiffness else (TINY, TINY, TINY)
+    arm = Arm(disks, LENGTH, modulus, area, second, cables=cables)
     works = Cables() if load == "cable" else DiskLoads((DiskLoad(disks, force, float(load == "theta")),))
     return Scene(arm, (Bending(), Extension(), works))
 
