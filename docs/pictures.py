@@ -13,13 +13,16 @@ HERE = Path(__file__).parent
 
 
 def main() -> None:
-    """Draw the step response, what its accuracy costs, and the paper computed again."""
+    """Draw the step response, what its accuracy costs, a path with folds, and the paper computed again."""
     scenario = load_scenario(HERE.parent / "scenarios" / "step_response.toml")
     with TemporaryDirectory() as folder:
         log = Path(folder) / "step_response.h5"
         write_log(simulate(scenario), log)
+        path = Path(folder) / "snap_through.h5"
+        write_log(simulate(load_scenario(HERE.parent / "scenarios" / "snap_through.toml")), path)
         figures = {
             "step_response.png": plots.step_response(read_log(log)),
+            "snap_through.png": plots.ramp(read_log(path)),
             "cost.png": plots.cost(measure(scenario)),
             "rone2012.png": plots.rone2012(reproduce("rone2012")),
         }

@@ -73,6 +73,7 @@ def follow_path(
     from ``start``, or from straight, and takes at most so many ``steps``. Raises ``InputError`` for tensions
     that do not fit, and for scenes without a potential.
     """
+    check_followable(scene)
     solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
     return follow(solver, ramp, None if start is None else start.coordinates, steps)
 

@@ -110,8 +110,16 @@ def test_modes_know_what_drives_the_scene(shaken: Scenario) -> None:
 
 
 def test_ramp_takes_no_profile_of_a_factor(shaken: Scenario) -> None:
-    with pytest.raises(InputError, match="lists of tensions and load factors"):
+    with pytest.raises(InputError, match="lists of tensions and load factors, or numbers"):
         replace(shaken, study=RampStudy(), tension=((0.0, 1.0),))
+
+
+def test_ramp_takes_lists_of_factors_as_long_as_those_of_tensions(shaken: Scenario) -> None:
+    ramp = replace(shaken, study=RampStudy(), tension=((1.0, 1.0),), load_factors=((0.5, 1.0),))
+    factors = [point.load_factor for point in simulate(ramp).equilibria]
+    np.testing.assert_array_equal(factors, [[0.5], [1.0]])
+    with pytest.raises(InputError, match="equal length; they have 2, 3 entries"):
+        replace(ramp, load_factors=((0.0, 0.5, 1.0),))
 
 
 def test_scene_without_driven_loads_has_none_in_its_kernel(shaken: Scenario) -> None:
@@ -127,7 +135,7 @@ def test_scene_without_driven_loads_has_none_in_its_kernel(shaken: Scenario) -> 
         (
             '{ profile = "sine", mean = 0.0, amplitude = 1.0, frequency = 20.0 }',
             "[1.0, 2.0]",
-            "a list for factor",
+            "list for factor belongs",
         ),
         ('"sine", mean = 0.0, amplitude = 1.0, frequency = 20.0', '"table", file = "no.csv"', "no such file"),
         ("factor =", "factr =", "'factor'"),

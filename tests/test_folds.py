@@ -9,8 +9,10 @@ import whole_arm
 from scipy.optimize import root
 
 from continuum_dyn import Run, load_scenario, simulate
+from continuum_dyn.record import read_log, write_log
 from continuum_dyn.study import RampStudy, Scenario
-from statics import Critical, Equilibrium, Outcome, Scene
+from continuum_dyn.views import plots
+from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path
 
 SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
 
@@ -106,3 +108,20 @@ def test_ramp_up_and_down_jumps_at_the_one_fold_and_at_the_other(scenario: Scena
         (4.5, 4.344),
         (1.0, 1.013),
     ]
+
+
+def test_picture_of_a_path_marks_its_folds(followed: Run, tmp_path: Path) -> None:
+    write_log(followed, tmp_path / "path.h5")
+    log = read_log(tmp_path / "path.h5")
+    assert log.equilibria["critical"].sum() == 2
+    labels = plots.ramp(log).axes[0].get_legend_handles_labels()[1]
+    assert labels == ["stable", "unstable", "fold"]
+
+
+@pytest.mark.parametrize(
+    ("scenario_file", "hindrance"), [("friction_ramp", "friction"), ("follower_tip", "follower")]
+)
+def test_path_of_a_scene_without_a_potential_is_refused(scenario_file: str, hindrance: str) -> None:
+    scene = load_scenario(SNAP.with_stem(scenario_file)).scene
+    with pytest.raises(InputError, match=f"needs a potential, which {hindrance}"):
+        follow_path(scene, [np.zeros(scene.cables), np.ones(scene.cables)])

@@ -51,6 +51,30 @@ def step_response(log: Log) -> Figure:
     return figure
 
 
+def ramp(log: Log) -> Figure:
+    """Angle of the tip against the first cable's tension or load factor: stable solid, unstable dashed, folds marked.
+
+    What jumps is not joined.
+    """
+    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
+    axes, points = figure.subplots(), log.equilibria
+    name = "tension" if points["tension"].shape[1] else "load_factor"
+    drive, tip = points[name][:, 0], points["disk_theta"][:, -1]
+    stable, critical = points["stable"].astype(bool), points["critical"]
+    for start, end in pairwise(range(len(drive))):
+        if not points["jumped"][end]:
+            steady = (stable | (critical > 0))[[start, end]].all() and stable[[start, end]].any()
+            axes.plot(drive[[start, end]], tip[[start, end]], "k-" if steady else "k--", lw=1.2)
+    axes.plot(drive[stable], tip[stable], "ko", ms=4, label="stable")
+    axes.plot(drive[~stable], tip[~stable], "ko", mfc="w", ms=4, label="unstable")
+    for kind, marker, label in ((1, "s", "fold"), (2, "D", "branching")):
+        if (critical == kind).any():
+            axes.plot(drive[critical == kind], tip[critical == kind], f"C3{marker}", ms=6, label=label)
+    axes.set(xlabel=QUANTITIES[name].label, ylabel="tip angle (rad)", title=log.title)
+    axes.legend()
+    return figure
+
+
 def cost(measured: Cost) -> Figure:
     """Tip error against time and work for every method, and against time for every mesh."""
     figure = Figure(figsize=(12.0, 4.4), layout="constrained")
