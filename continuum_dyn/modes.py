@@ -33,15 +33,26 @@ WITHIN = 1e-3
 def rates(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[float, float]:
     """Smallest and largest absolute eigenvalue (1/s) of the motion linearized at ``y``."""
     size = 2 * dynamics.size
-    found = np.abs(np.linalg.eigvals(dynamics.jacobian(span.start, y, span)[:size, :size]))
+    found = np.abs(np.linalg.eigvals(linearized(dynamics, y, span)[:size, :size]))
     return float(found.min()), float(found.max())
+
+
+def linearized(dynamics: Dynamics, y: np.ndarray, span: Span) -> np.ndarray:
+    """d(rate)/dy. Raises ``InputError`` where it is beyond floating point."""
+    matrix = dynamics.jacobian(span.start, y, span)
+    if not np.isfinite(matrix).all():
+        raise InputError(
+            "the equations of motion overflow at the start: numbers of the scene are too far apart. "
+            "Look for a unit that is not SI."
+        )
+    return matrix
 
 
 def fastest_frequency(dynamics: Dynamics, span: Span, y: np.ndarray) -> float:
     """Largest natural frequency (rad/s) of the undamped motion linearized at a state at rest."""
     size = dynamics.size
     if size <= MOST_DENSE:
-        stiffness = dynamics.jacobian(span.start, y, span)[size : 2 * size, :size]
+        stiffness = linearized(dynamics, y, span)[size : 2 * size, :size]
         return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
     scale = SMALL * dynamics.scales()[:size]
 
@@ -173,7 +184,7 @@ class _Motion(NamedTuple):
 def modes(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[Mode, ...]:
     """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first."""
     size, scales = dynamics.size, dynamics.scales()[: dynamics.size]
-    jacobian = dynamics.jacobian(span.start, y, span)[: 2 * size, : 2 * size]
+    jacobian = linearized(dynamics, y, span)[: 2 * size, : 2 * size]
     free = not jacobian[size:, size:].any()
     motions = _free(jacobian[size:, :size], scales) if free else _damped(jacobian, scales)
     inputs = span.inputs(np.array([span.start]))[0]

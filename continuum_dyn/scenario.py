@@ -7,6 +7,7 @@ with its place, what was read, and the nearest allowed word.
 import json
 import tomllib
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,11 @@ from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
 from statics.scene import Scene
 
+MAX_FILE_SIZE = 5_000_000
+"""Of a scenario, bytes; long tables have files of their own."""
+LARGEST = 1e30
+"""Size of the largest number of a scenario; that of the smallest is one over it."""
+
 
 def load_scenario(path: str | Path) -> Scenario:
     """Read and check a scenario file.
@@ -44,9 +50,10 @@ def load_scenario(path: str | Path) -> Scenario:
 def load_expecting(path: str | Path) -> tuple[Scenario, Expect | None]:
     """The scenario, and what it expects of its run. Raises ``InputError`` like ``load_scenario``."""
     path = Path(path)
-    text = read_text(path)
+    text = read_text(path, MAX_FILE_SIZE)
     try:
         content = tomllib.loads(text)
+        _check_sizes(content, "")
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
         _check_tolerances(content)
         return _build(file, path, text), file.expect
@@ -58,6 +65,26 @@ def load_expecting(path: str | Path) -> tuple[Scenario, Expect | None]:
         raise InputError(f"{path}: {error}") from error
     except RecursionError as error:
         raise InputError(f"{path}: nested too deeply to be a scenario.") from error
+
+
+def _check_sizes(content: Any, place: str) -> None:
+    """Refuse numbers of no physical arm, whose products would be beyond floating point."""
+    if isinstance(content, dict):
+        for key, value in content.items():
+            _check_sizes(value, f"{place} {key}".lstrip())
+    elif isinstance(content, list):
+        for number, value in enumerate(content, start=1):
+            _check_sizes(value, f"{place} number {number}" if isinstance(value, dict) else place)
+    elif type(content) in (int, float) and not _is_physical(abs(content)):
+        raise InputError(
+            f"{place[:60]!r}: too {'large' if abs(content) > 1 else 'small'} a number to compute with. "
+            f"Allowed: 0, and sizes from {1 / LARGEST:g} to {LARGEST:g}, in SI units."
+        )
+
+
+def _is_physical(size: float) -> bool:
+    """Also true of what is no finite number: that is told where it is read."""
+    return size == 0 or 1 / LARGEST <= size <= LARGEST or not size < inf
 
 
 def _check_tolerances(content: dict[str, Any]) -> None:

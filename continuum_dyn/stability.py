@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.modes import NEUTRAL, check, still
+from continuum_dyn.modes import NEUTRAL, check, linearized, still
 from statics.equilibria import Equilibrium
 from statics.errors import InputError
 from statics.outcome import Outcome
@@ -49,7 +49,7 @@ def growth_about(dynamics: Dynamics, point: Equilibrium) -> Growth | None:
 def _eigenvalues(dynamics: Dynamics, point: Equilibrium) -> Any:
     """Those of the linearized motion, 1/s; without damping only one of each two of opposite sign."""
     size, span = dynamics.size, still(point.inputs)
-    jacobian = dynamics.jacobian(span.start, dynamics.state(point.coordinates), span)
+    jacobian = linearized(dynamics, dynamics.state(point.coordinates), span)
     if jacobian[size : 2 * size, size : 2 * size].any():
         return np.linalg.eigvals(jacobian[: 2 * size, : 2 * size])
     return np.sqrt(np.linalg.eigvals(jacobian[size : 2 * size, :size]).astype(complex))

@@ -2,6 +2,7 @@
 
 import csv
 from itertools import islice
+from math import inf
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -11,6 +12,8 @@ from continuum_dyn.text_file import read_text
 from statics.errors import InputError
 
 MAX_ROWS = 1_000_000
+LARGEST = 1e30
+"""Size of the largest number in a table."""
 
 
 def read_table(scenario: Path, name: str, quantity: str) -> Table:
@@ -32,6 +35,9 @@ def read_table(scenario: Path, name: str, quantity: str) -> Table:
     if not values:
         raise InputError(f"table '{name}': no rows below the header.")
     negative = [row for row, (_, value) in enumerate(values, start=1) if value < 0]
+    large = [row for row, numbers in enumerate(values, start=1) if LARGEST < max(map(abs, numbers)) < inf]
+    if large:
+        raise InputError(f"table '{name}', row {large[0]}: too large to compute with. Allowed: {LARGEST:g}.")
     if quantity == "tension" and negative:
         raise InputError(
             f"table '{name}', row {negative[0]}: a cable cannot push; read {values[negative[0] - 1][1]:g}"

@@ -8,13 +8,16 @@ from statics.errors import InputError, did_you_mean
 MAX_FILE_SIZE = 50_000_000
 
 
-def read_text(path: Path) -> str:
-    """The file's text. Raises ``InputError`` that names the file and, if it is missing, its neighbours."""
+def read_text(path: Path, largest: int = MAX_FILE_SIZE) -> str:
+    """The file's text, of ``largest`` bytes at most.
+
+    Raises ``InputError`` that names the file and, if it is missing, its neighbours.
+    """
     try:
         with path.open("rb") as file:
-            content = file.read(MAX_FILE_SIZE + 1)
-        if len(content) > MAX_FILE_SIZE:
-            raise InputError(f"{path}: larger than {MAX_FILE_SIZE // 1_000_000} MB.")
+            content = file.read(largest + 1)
+        if len(content) > largest:
+            raise InputError(f"{path}: larger than {largest // 1_000_000} MB.")
         return io.TextIOWrapper(io.BytesIO(content), encoding="utf-8").read()
     except FileNotFoundError as error:
         known = [p.name for p in sorted(path.parent.glob("*.toml"))] if path.parent.is_dir() else []

@@ -187,14 +187,16 @@ class StaticSolver:
         arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         elastic, gravity, residual, negative = self.kernel.examine(q, inputs, self.segments, self.disks, pose)
-        if not (np.isfinite([elastic, gravity, residual]).all() and np.isfinite(pose).all()):
-            ended = search.NOT_FOUND
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
+        driven = self.scene.driven_by(inputs, disk_x, disk_y, disk_theta)
+        numbers = (q, pose, driven["tension"], driven["cable_displacement"], [elastic, gravity, residual])
+        if not all(np.isfinite(values).all() for values in numbers):
+            ended = search.NOT_FOUND
         return Equilibrium(
             outcome=_outcome(ended, negative),
             inputs=self.scene.held(inputs),
-            **self.scene.driven_by(inputs, disk_x, disk_y, disk_theta),
+            **driven,
             bend_angle=q[:, 0],
             elongation=elongation,
             **shape_of(arm, q[:, 0], elongation),

@@ -13,6 +13,8 @@ from statics.effects import DiskLoads, Effect
 from statics.effects.cables import Poses, cable_lengths
 from statics.errors import InputError, did_you_mean
 
+MAX_ALIKE = 20
+"""Most cables, or loads that change in time, or payloads on one disk: deriving them takes time for each."""
 BASE_POSE = ("base_x", "base_y", "base_theta")
 BASE_MOTION = (
     *("base_velocity_x", "base_velocity_y", "base_angular_velocity"),
@@ -39,6 +41,14 @@ class Scene:
                 raise InputError(f"effect '{name}' is given {count} times. Give it once.")
         for effect in self.effects:
             self._check(effect)
+        alike = (
+            (self.cables, "cables"),
+            (self.driven_loads, "driven loads"),
+            (self.payloads, "payloads on a disk"),
+        )
+        for count, what in alike:
+            if count > MAX_ALIKE:
+                raise InputError(f"{count} {what}: each has equations of its own. Allowed: {MAX_ALIKE}.")
         if self.has("cable_friction") and not self.has("cables"):
             raise InputError("effect 'cable_friction' without cables in play. Add 'cables', or leave it out.")
 

@@ -2,8 +2,8 @@
 
 Every mutant must load or be refused with an ``InputError``. Those that load, and whose kernels are those of
 the scenarios named in ``WARM``, are run with a small budget, and their logs written and read back. A mutant
-that ends in any other way, takes longer than ``SECONDS`` or needs more memory than ``MEMORY`` is printed, and
-the exit status is 1.
+that ends in any other way or with a warning, takes longer than ``SECONDS`` or more memory than ``MEMORY`` is
+printed, and the exit status is 1.
 """
 
 import argparse
@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import traceback
+import warnings
 from collections import Counter
 from pathlib import Path
 from random import Random
@@ -122,6 +123,7 @@ def main() -> int:
     signal.signal(signal.SIGALRM, too_slow)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     warm_up()
+    warnings.simplefilter("error")
     return int(fuzz(asked.count, asked.seed) > 0)
 
 

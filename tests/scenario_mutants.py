@@ -158,12 +158,12 @@ def _repeat(rng: Random, content: Tables) -> None:
     lists = [holder[key] for holder, key in _places(content) if isinstance(holder[key], list) and holder[key]]
     if lists:
         chosen = rng.choice(lists)
-        chosen.extend(copy.deepcopy(chosen) * rng.choice((1, 1, 1, 30)))
+        chosen.extend(copy.deepcopy(chosen) * (rng.choice((1, 1, 1, 30)) if len(chosen) < 50 else 1))
 
 
 def _lengthen(rng: Random, content: Tables) -> None:
     holder, key = _any_place(rng, content)
-    holder[key] = [rng.choice((0.5, 1, 1.0, holder[key]))] * rng.choice((1, 4, 5, 4000))
+    holder[key] = rng.choice(([0.5] * 4000, [1] * 4, [holder[key]] * 2, [1.0] * 5))
 
 
 def _nest(rng: Random, content: Tables) -> None:
