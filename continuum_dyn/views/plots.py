@@ -52,7 +52,7 @@ def step_response(log: Log) -> Figure:
 
 
 def ramp(log: Log) -> Figure:
-    """Tip angle against the first cable's tension or load factor: stable solid, unstable dashed, folds marked.
+    """Tip angle against the first cable's tension or load factor: solid if stable, else dashed, folds marked.
 
     What jumps is not joined.
     """
