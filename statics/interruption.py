@@ -1,11 +1,12 @@
 """Ctrl-C, where it must wait: while a file is written, or while there is something to be kept first."""
 
 import signal
+import sys
 import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Item = TypeVar("Item")
 
@@ -82,12 +83,17 @@ def _outermost() -> Iterator[Interruption]:
         if again or interruption.raises:
             raise KeyboardInterrupt
 
-    _held = interruption
+    def on_swallowed(unraisable: Any) -> None:
+        if unraisable.exc_type is not KeyboardInterrupt:  # that one is not lost: it was noted as asked for
+            told_before(unraisable)
+
+    told_before = sys.unraisablehook
+    _held, sys.unraisablehook = interruption, on_swallowed
     signal.signal(signal.SIGINT, on_interrupt)
     try:
         yield interruption
     finally:
-        _held = None
+        _held, sys.unraisablehook = None, told_before
         signal.signal(signal.SIGINT, previous)
         if interruption.asked:
             previous(signal.SIGINT, None)
