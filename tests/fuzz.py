@@ -37,6 +37,8 @@ MEMORY = 4_000_000_000
 """Most address space of the whole program, bytes."""
 LOGGED = 4
 """One of so many numbers of mutants has its log written."""
+WATCHED = 100
+"""Mutants in a row that are given up, with a traceback, where even compiled code does not come to its end."""
 MAX_SHOWN = 10
 REPORTED = 10_000
 """Mutants between two lines that tell how far it is."""
@@ -92,8 +94,10 @@ def fuzz(first: int, count: int, seed: int) -> int:
         for number in range(first, first + count):
             rng = Random(f"{seed} {number}")
             text = mutant(rng, texts)
-            (Path(folder) / TABLE.name).write_text(spoiled(rng, table) if rng.random() < 0.5 else table)
-            faulthandler.dump_traceback_later(20 * SECONDS, exit=True)
+            if TABLE.name in text:
+                (Path(folder) / TABLE.name).write_text(spoiled(rng, table) if rng.random() < 0.5 else table)
+            if number % WATCHED == 0:
+                faulthandler.dump_traceback_later(WATCHED * SECONDS, exit=True)
             signal.setitimer(signal.ITIMER_PROF, SECONDS)
             before = time.process_time()
             try:
