@@ -20,6 +20,6 @@ def broken_ledger(found: Trajectory, tolerance: float) -> str | None:
     if gap <= (OPEN + PER_TOLERANCE * tolerance / found.travel) * whole:
         return None
     return (
-        f"energies do not add up: {gap:.2g} J of at most {whole:.2g} J are not accounted for, so the motion is "
-        'wrong. Lower rtol, or let method = "auto" choose'
+        f"energies do not add up: {gap:.2g} J of at most {whole:.2g} J are not accounted for, so the motion "
+        'is wrong. Lower rtol, or let method = "auto" choose'
     )

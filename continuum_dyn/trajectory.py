@@ -77,7 +77,7 @@ class Trajectory:
 
     @property
     def largest_energy(self) -> float:
-        """The largest energy that moved, by which others are measured, J: stored, kinetic, put in, dissipated."""
+        """The largest energy that moved, J: stored, kinetic, put in or dissipated."""
         compared = ("kinetic_energy", "input_work", "dissipated_energy")
         moved = (float(np.abs(self.ledger[name]).max()) for name in compared)
         return max(float(np.ptp(self.stored_energy)), *moved)

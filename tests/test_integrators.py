@@ -240,7 +240,7 @@ def test_explicit_method_agrees_with_the_implicit_one_where_both_can() -> None:
 
 
 def test_explicit_steps_at_the_edge_of_stability_do_not_shiver(step_response: Scenario) -> None:
-    """Errors within the tolerance, but of the axial modes' rates, once dissipated more than the motion had."""
+    """Errors within the tolerance, but of the axial modes' rates, dissipated more than the motion had."""
     brief = replace(step_response, study=MotionStudy(2e-3, samples=11), solver=Solver("explicit"))
     run = simulate(brief)
     assert run.trajectory is not None

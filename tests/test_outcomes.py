@@ -127,6 +127,16 @@ def test_budget_of_seconds_ends_the_run() -> None:
     assert_kept(run, 0.05)
 
 
+@pytest.mark.parametrize("method", ["RK45", "Radau", "BDF", "LSODA"])
+def test_budget_of_seconds_ends_a_step_that_goes_on(method: Method) -> None:
+    """One step of a large arm by a method with dense matrices takes minutes."""
+    run = simulate(step_to(1.0, method=method), budget=Budget(seconds=0.0))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "used up by t = 0 s" in run.message
+    assert run.trajectory is not None
+    assert run.trajectory.counters["steps"] == 0
+
+
 @pytest.mark.parametrize("method", ["LSODA", "Radau", "BDF"])
 def test_forces_that_are_not_numbers_end_as_diverged(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     plain_rate = Dynamics.rate
