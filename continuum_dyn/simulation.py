@@ -28,6 +28,7 @@ from statics.equilibria import Equilibrium, StaticSolver
 from statics.interruption import Interruption, allowed, held
 from statics.outcome import Outcome
 from statics.ramp import limit_on_the_way, ramp
+from statics.stages import stage
 
 TIME_PART = 0.25
 """Part of the accuracy that a mesh's integration may use up; two extrapolated use nearly twice that."""
@@ -156,7 +157,7 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
 
 def _statics(scenario: Scenario, budget: Budget, interruption: Interruption) -> Run:
     try:
-        with allowed():
+        with allowed(), stage("kernels of statics"):
             solver = StaticSolver(scenario.scene)
             solver.warm_up()
     except KeyboardInterrupt:
@@ -176,7 +177,8 @@ def _followed(
     """The path of equilibria through all its folds."""
     started = time.monotonic()
     steps = budget.spent_on(interruption.until_asked(range(MOST_STEPS)), started)
-    path = follow(solver, inputs, steps=steps)
+    with stage("equilibria"):
+        path = follow(solver, inputs, steps=steps)
     solve_time = time.monotonic() - started
     outcome, message = path.outcome, told_of_path(path)
     if outcome is Outcome.NO_EQUILIBRIUM and (interruption.asked or budget.is_spent(started)):
@@ -190,7 +192,8 @@ def _one_by_one(
 ) -> Run:
     """A stable equilibrium for each set of inputs."""
     started = time.monotonic()
-    points = ramp(solver, budget.spent_on(interruption.until_asked(inputs), started))
+    with stage("equilibria"):
+        points = ramp(solver, budget.spent_on(interruption.until_asked(inputs), started))
     solve_time = time.monotonic() - started
     message, growths = told_of_points(points), [None] * len(points)
     if any(point.stable is None for point in points):
@@ -254,7 +257,7 @@ def _motion(
     interruption: Interruption,
 ) -> Run:
     try:
-        with allowed():
+        with allowed(), stage("kernels of statics and dynamics"):
             statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
             statics.warm_up()
     except KeyboardInterrupt:
@@ -268,7 +271,7 @@ def _motion(
         return Run(scenario, start.outcome, why(start, None, limit), [start], solve_time=solve_time)
     y = dynamics.state(start.coordinates)
     try:
-        with allowed():
+        with allowed(), stage("choice of the method, and its kernels"):
             solver = _settled_on(scenario, study, dynamics, y, stretches)
             warm_up(dynamics, solver, stretches[0])
     except KeyboardInterrupt:
@@ -280,7 +283,8 @@ def _motion(
         budget=budget,
         interruption=interruption,
     )
-    moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
+    with stage(f"motion by {solver.method}"):
+        moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
     _check_energies(scenario, moved, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)

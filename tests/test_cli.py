@@ -156,13 +156,6 @@ def test_play_refuses_what_is_not_a_log(tmp_path: Path) -> None:
     assert "no such file" in result.stderr
 
 
-@pytest.mark.parametrize("name", ["run", "play", "explain", "modes", "cost", "reproduce"])
-def test_help_fits_80_columns(name: str) -> None:
-    result = runner.invoke(app, [name, "--help"])
-    assert result.exit_code == 0
-    assert max(map(len, result.stdout.splitlines())) <= 80
-
-
 def test_warm_run_imports_no_sympy_and_derives_nothing(tmp_path: Path) -> None:
     code = (
         "import sys\n"
