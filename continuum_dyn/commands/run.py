@@ -63,7 +63,8 @@ def run(
 
 def _load(files: list[Path], overrides: Sequence[str]) -> "list[tuple[Path, Scenario]]":
     """All scenarios, checked before the first one runs."""
-    from continuum_dyn.scenario import load_scenario
+    with held():  # what Ctrl-C breaks off within the import of a library might come out as anything
+        from continuum_dyn.scenario import load_scenario
 
     for stem, count in Counter(path.stem for path in files).items():
         if count > 1:
