@@ -36,8 +36,8 @@ from statics.scene import Scene
 
 MAX_FILE_SIZE = 5_000_000
 """Of a scenario, bytes; long tables have files of their own."""
-LARGEST = 1e30
-"""Size of the largest number of a scenario; that of the smallest is one over it."""
+SMALLEST, LARGEST = 1e-60, 1e30
+"""Sizes of numbers of a scenario; the inertia of a disk of 1 nm is of 1e-44 kg m^2."""
 
 
 def load_scenario(path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
@@ -81,13 +81,13 @@ def _check_sizes(content: Any, place: str) -> None:
     elif type(content) in (int, float) and not _is_physical(abs(content)):
         raise InputError(
             f"{place[:60]!r}: too {'large' if abs(content) > 1 else 'small'} a number to compute with. "
-            f"Allowed: 0, and sizes from {1 / LARGEST:g} to {LARGEST:g}, in SI units."
+            f"Allowed: 0, and sizes from {SMALLEST:g} to {LARGEST:g}, in SI units."
         )
 
 
 def _is_physical(size: float) -> bool:
     """Also true of what is no finite number: that is told where it is read."""
-    return size == 0 or 1 / LARGEST <= size <= LARGEST or not size < inf
+    return size == 0 or SMALLEST <= size <= LARGEST or not size < inf
 
 
 def _check_tolerances(content: dict[str, Any]) -> None:

@@ -20,7 +20,7 @@ from statics.interruption import allowed, held
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
 
 MOMENTS = 100
-WITHOUT_CACHE = 16
+WITHOUT_CACHE = 50
 """One of so many moments lies in a run that makes its kernels anew."""
 
 
@@ -127,22 +127,22 @@ def test_interrupted_while_compiling_leaves_a_log_that_says_so(tmp_path: Path) -
 
 @pytest.mark.slow
 def test_interrupted_at_any_of_many_random_moments(tmp_path: Path) -> None:
-    """They are drawn over the whole of each run, as long as that takes beside as many others."""
-    scenarios = [SCENARIOS / "step_response.toml", long_ramp(tmp_path), long_motion(tmp_path)]
-    workers = os.cpu_count() or 1
+    """They are drawn over the whole of a run, as long as that takes beside another one."""
+    finite = [SCENARIOS / "step_response.toml", long_ramp(tmp_path)]
 
-    def whole(number: int) -> Interrupted:
-        return interrupted(scenarios[number % 2], tmp_path / f"whole_{number}", after=inf)
+    def whole(scenario: Path) -> float:
+        return interrupted(scenario, tmp_path / f"whole_{scenario.stem}", after=inf).seconds
 
-    def at_a_moment(number: int, within: float) -> Interrupted:
+    def at_a_moment(number: int) -> Interrupted:
         rng = Random(number)
         options = ("--no-cache",) if number % WITHOUT_CACHE == 0 else ()
-        scenario, after = rng.choice(scenarios), rng.uniform(0.0, within)
-        return interrupted(scenario, tmp_path / f"out_{number}", *options, after=after)
+        scenario, length = rng.choice(runs)
+        return interrupted(scenario, tmp_path / f"out_{number}", *options, after=rng.uniform(0.0, length))
 
-    with ThreadPoolExecutor(workers) as pool:
-        longest = max(found.seconds for found in pool.map(whole, range(2 * workers)))
-        found = list(pool.map(lambda number: at_a_moment(number, longest), range(MOMENTS)))
+    with ThreadPoolExecutor(2) as pool:
+        lengths = list(pool.map(whole, finite))
+        runs = [*zip(finite, lengths, strict=True), (long_motion(tmp_path), lengths[0])]
+        found = list(pool.map(at_a_moment, range(MOMENTS)))
     for each in found:
         check(each, finished=(Outcome.SETTLED, Outcome.COMPLETED))
     assert {each.log is None for each in found} == {True, False}
