@@ -24,18 +24,6 @@ app = typer.Typer(
 )
 
 
-@app.callback()
-def options(
-    context: typer.Context,
-    without_cache: Annotated[
-        bool, typer.Option("--no-cache", help="Compile anew, and keep nothing of it.")
-    ] = False,
-) -> None:
-    """Statics and dynamics of planar cable-driven continuum arms."""
-    if without_cache:
-        context.with_resource(no_cache())
-
-
 def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
     """The command, with errors that are meant for the user printed without a traceback."""
 
@@ -51,6 +39,19 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
             raise typer.Exit(INTERRUPTED) from error
 
     return guarded
+
+
+@app.callback()
+@with_exit_status
+def options(
+    context: typer.Context,
+    without_cache: Annotated[
+        bool, typer.Option("--no-cache", help="Compile anew, and keep nothing of it.")
+    ] = False,
+) -> None:
+    """Statics and dynamics of planar cable-driven continuum arms."""
+    if without_cache:
+        context.with_resource(no_cache())
 
 
 for _command in (run.run, play.play, explain.explain, modes.modes, cost.cost, hard.hard, reproduce.reproduce):

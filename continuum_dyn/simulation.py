@@ -12,6 +12,7 @@ import numpy as np
 
 from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.energy_balance import broken_ledger
 from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
@@ -21,7 +22,7 @@ from continuum_dyn.settling import settled, tip_gap
 from continuum_dyn.stability import Growth, judged, why_not_judged
 from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
 from continuum_dyn.trajectory import Trajectory
-from statics.arc_length import follow
+from statics.arc_length import MOST_STEPS, follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.interruption import Interruption, allowed, held
@@ -80,8 +81,8 @@ def simulate(
 ) -> Run:
     """Answer a scenario: see ``Run``.
 
-    ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion, by
-    default those of the scenario's solver.
+    ``progress`` is called with the fraction done; ``budget`` bounds the steps of a motion and the seconds of
+    a motion or a ramp, by default those of the scenario's solver.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
     kept. Whatever happens while solving is an outcome, not an exception, Ctrl-C too: what was computed by
     then is in the run. Pressed again, it raises ``KeyboardInterrupt``.
@@ -94,7 +95,7 @@ def simulate(
         elif isinstance(scenario.study, MotionStudy):
             run = _motion(scenario, scenario.study, progress, budget, interruption)
         else:
-            run = _statics(scenario, interruption)
+            run = _statics(scenario, budget, interruption)
         if run.outcome is Outcome.INTERRUPTED:
             interruption.asked = False
     return run
@@ -153,26 +154,44 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
     )
 
 
-def _statics(scenario: Scenario, interruption: Interruption) -> Run:
+def _statics(scenario: Scenario, budget: Budget, interruption: Interruption) -> Run:
     try:
         with allowed():
             solver = StaticSolver(scenario.scene)
             solver.warm_up()
     except KeyboardInterrupt:
         return _interrupted_early(scenario)
+    inputs = scenario.initial_tension[None, :]
     if isinstance(scenario.study, RampStudy):
-        inputs = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
-        others = scenario.initial_tension[inputs.shape[1] :]
-        inputs = np.hstack([inputs, np.tile(others, (len(inputs), 1))])
-    else:
-        inputs = scenario.initial_tension[None, :]
-    started = time.perf_counter()
-    if isinstance(scenario.study, RampStudy) and scenario.study.path == "arc_length":
-        path = follow(solver, inputs)
-        solve_time = time.perf_counter() - started
-        return Run(scenario, path.outcome, told_of_path(path), path.points, solve_time=solve_time)
-    points = ramp(solver, interruption.until_asked(inputs))
-    solve_time = time.perf_counter() - started
+        ramps = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
+        inputs = np.hstack([ramps, np.tile(inputs[:, ramps.shape[1] :], (len(ramps), 1))])
+        if scenario.study.path == "arc_length":
+            return _followed(scenario, solver, inputs, budget, interruption)
+    return _one_by_one(scenario, solver, inputs, budget, interruption)
+
+
+def _followed(
+    scenario: Scenario, solver: StaticSolver, inputs: np.ndarray, budget: Budget, interruption: Interruption
+) -> Run:
+    """The path of equilibria through all its folds."""
+    started = time.monotonic()
+    steps = budget.spent_on(interruption.until_asked(range(MOST_STEPS)), started)
+    path = follow(solver, inputs, steps=steps)
+    solve_time = time.monotonic() - started
+    outcome, message = path.outcome, told_of_path(path)
+    if outcome is Outcome.NO_EQUILIBRIUM and (interruption.asked or budget.is_spent(started)):
+        outcome, words = _cut_short(budget, interruption)
+        message = f"{words} {path.end.drive}"
+    return Run(scenario, outcome, message, path.points, solve_time=solve_time)
+
+
+def _one_by_one(
+    scenario: Scenario, solver: StaticSolver, inputs: np.ndarray, budget: Budget, interruption: Interruption
+) -> Run:
+    """A stable equilibrium for each set of inputs."""
+    started = time.monotonic()
+    points = ramp(solver, budget.spent_on(interruption.until_asked(inputs), started))
+    solve_time = time.monotonic() - started
     message, growths = told_of_points(points), [None] * len(points)
     if any(point.stable is None for point in points):
         message = why_not_judged(scenario.scene) or ""
@@ -186,8 +205,16 @@ def _statics(scenario: Scenario, interruption: Interruption) -> Run:
             break
         before = point
     if len(points) < len(inputs):
-        outcome, message = Outcome.INTERRUPTED, f"interrupted after {len(points)} of {len(inputs)} points"
+        outcome, words = _cut_short(budget, interruption)
+        message = f"{words} after {len(points)} of {len(inputs)} points"
     return Run(scenario, outcome, message, points, solve_time=solve_time)
+
+
+def _cut_short(budget: Budget, interruption: Interruption) -> tuple[Outcome, str]:
+    """Why a ramp ended before its last point, as an outcome and in words."""
+    if interruption.asked:
+        return Outcome.INTERRUPTED, "interrupted"
+    return Outcome.BUDGET_EXCEEDED, f"{budget.seconds:g} s used up"
 
 
 def _limit(
@@ -254,6 +281,7 @@ def _motion(
         interruption=interruption,
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
+    _check_energies(scenario, moved, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)
     path = _static_path(statics, moved.trajectory, start, monitor) if study.static_path else []
@@ -273,6 +301,13 @@ def _motion(
         solve_time=solve_time,
     )
     return run if monitor.outcome else _compared(run, study, statics.branches(last, ends[-1]), growths[-1])
+
+
+def _check_energies(scenario: Scenario, moved: "_Moved", monitor: Monitor) -> None:
+    length = scenario.scene.arm.total_length
+    told = broken_ledger(moved.trajectory, (moved.solver.rtol + moved.solver.atol) * length)
+    if told is not None:
+        monitor.stop(Outcome.DIVERGED, told)
 
 
 def _end(
@@ -297,10 +332,12 @@ def _end(
 def _static_path(
     statics: StaticSolver, trajectory: Trajectory, start: Equilibrium, monitor: Monitor
 ) -> list[Equilibrium]:
-    """The equilibrium of every sample, or of those before Ctrl-C."""
-    path = ramp(statics, monitor.interruption.until_asked(trajectory.inputs), start.coordinates)
+    """The equilibrium of every sample, or of those before Ctrl-C or the end of the budget."""
+    samples = monitor.interruption.until_asked(trajectory.inputs)
+    path = ramp(statics, monitor.budget.spent_on(samples, monitor.started), start.coordinates)
     if len(path) < len(trajectory.inputs):
-        monitor.stop(Outcome.INTERRUPTED, f"interrupted after the motion, {len(path)} points on its path")
+        outcome, message = _cut_short(monitor.budget, monitor.interruption)
+        monitor.stop(outcome, f"{message} after the motion, {len(path)} points on its path")
     return path
 
 

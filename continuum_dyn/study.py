@@ -96,7 +96,8 @@ class Solver:
     shortest period of the arm at the start or of its drive. "auto" decides between them by the motion's own
     modes. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend angles; elongations use it
     times the segment's rest length, rates the same times the arm's natural frequency, energies times its
-    bending stiffness over that length. ``max_steps`` and ``max_seconds`` bound what a motion may cost.
+    bending stiffness over that length. ``max_steps`` bounds what a motion may cost,
+    ``max_seconds`` what a motion or a ramp may.
     """
 
     method: Method = "auto"

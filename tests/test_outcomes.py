@@ -3,7 +3,7 @@
 import os
 import signal
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -46,6 +46,19 @@ def test_step_into_the_hole_limit_says_when_and_where(method: Method) -> None:
     assert "disk" in run.message
     assert "t = 0.0" in run.message
     assert_kept(run, 0.05)
+
+
+def test_motion_whose_energies_do_not_add_up_is_no_answer() -> None:
+    """An L-stable method damps what nothing damps; at a loose tolerance it comes to rest, which is wrong."""
+    free = moving(rone2012(), damping=False)
+    release, study = (Step(before=2.0, after=0.0),), MotionStudy(0.1, samples=11)
+    run = simulate(Scenario(free, release, study, Solver("chain", rtol=1e-4)))
+    assert run.outcome is Outcome.DIVERGED
+    assert "energies do not add up" in run.message
+    assert run.trajectory is not None
+    assert run.trajectory.time[-1] == 0.1
+    kept = simulate(Scenario(free, release, study, Solver("chain", rtol=1e-8)))
+    assert kept.outcome is Outcome.COMPLETED
 
 
 def without_extension() -> Scene:
@@ -112,6 +125,35 @@ def test_budget_of_seconds_ends_the_run() -> None:
     run = simulate(step_to(1.0), budget=Budget(seconds=0.0))
     assert run.outcome is Outcome.BUDGET_EXCEEDED
     assert_kept(run, 0.05)
+
+
+@pytest.mark.parametrize("method", ["RK45", "Radau", "BDF", "LSODA"])
+def test_budget_of_seconds_ends_a_step_that_goes_on(method: Method) -> None:
+    """One step of a large arm by a method with dense matrices takes minutes."""
+    run = simulate(step_to(1.0, method=method), budget=Budget(seconds=0.0))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "used up by t = 0 s" in run.message
+    assert run.trajectory is not None
+    assert run.trajectory.counters["steps"] == 0
+
+
+@pytest.mark.parametrize("path", ["stable", "arc_length"])
+def test_budget_of_seconds_ends_a_ramp(path: Literal["stable", "arc_length"]) -> None:
+    ramp = Scenario(rone2012(), (tuple(np.linspace(0.0, 2.0, 20)),), RampStudy(path=path))
+    run = simulate(ramp, budget=Budget(seconds=0.0))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "0 s used up" in run.message
+    assert len(run.equilibria) < 20
+
+
+def test_budget_of_seconds_counts_the_static_path_of_a_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here the motion leaves nothing of it."""
+    monkeypatch.setattr(Budget, "spent_on", lambda *_: iter(()))
+    scenario = Scenario(moving(rone2012()), (Constant(1.0),), MotionStudy(0.01, samples=9, static_path=True))
+    run = simulate(scenario)
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "after the motion, 0 points" in run.message
+    assert_kept(run, 0.01)
 
 
 @pytest.mark.parametrize("method", ["LSODA", "Radau", "BDF"])

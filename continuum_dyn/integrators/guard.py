@@ -5,9 +5,9 @@ SciPy's solvers have none of these. A guarded one fails at the first step that b
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.integrate import OdeSolver
@@ -16,6 +16,8 @@ from continuum_dyn.study import Solver
 from statics.interruption import Interruption
 from statics.outcome import Outcome
 
+Item = TypeVar("Item")
+
 
 @dataclass(frozen=True)
 class Budget:
@@ -23,6 +25,21 @@ class Budget:
 
     steps: int = Solver.max_steps
     seconds: float = Solver.max_seconds
+
+    def is_spent(self, started: float) -> bool:
+        """Whether the seconds from ``started``, a time of ``time.monotonic``, are used up."""
+        return time.monotonic() - started > self.seconds
+
+    def spent_on(self, items: Iterable[Item], started: float) -> Iterator[Item]:
+        """The items that come before the seconds from ``started`` are used up."""
+        for item in items:
+            if self.is_spent(started):
+                return
+            yield item
+
+
+class StepAbandonedError(Exception):
+    """The budget of time, or Ctrl-C, ends a run within a step; the monitor has noted which."""
 
 
 @dataclass
@@ -57,15 +74,27 @@ class Monitor:
         if found is not None:
             return self.stop(*found)
         self.reached = (t, y)
-        if self.interruption.asked:
-            return self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
         if self.steps >= self.budget.steps:
             return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.steps} steps taken by t = {t:.6g} s")
-        if time.monotonic() - self.started > self.budget.seconds:
-            return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.budget.seconds:g} s used up by t = {t:.6g} s")
+        if self._out_of_time(t):
+            return self.message
         if self.progress is not None:
             self.progress(t)
         return None
+
+    def within_step(self) -> None:
+        """Raises ``StepAbandonedError`` where a step must not go on: one of a large arm takes minutes."""
+        if self._out_of_time(self.reached[0]):
+            raise StepAbandonedError(self.message)
+
+    def _out_of_time(self, t: float) -> bool:
+        if self.interruption.asked:
+            self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
+        elif self.budget.is_spent(self.started):
+            self.stop(Outcome.BUDGET_EXCEEDED, f"{self.budget.seconds:g} s used up by t = {t:.6g} s")
+        else:
+            return False
+        return True
 
 
 class Guard(OdeSolver):
@@ -79,16 +108,26 @@ class Guard(OdeSolver):
     internal_rejections = 0
     steps_left = 1
 
-    def __init__(self, *arguments: Any, monitor: Monitor, **options: Any) -> None:
-        self.monitor = monitor
-        super().__init__(*arguments, **options)
+    def __init__(self, fun: Callable[..., Any], *arguments: Any, monitor: Monitor, **options: Any) -> None:
+        self.monitor, self.stepping = monitor, False
+
+        def watched(t: float, y: np.ndarray) -> Any:
+            if self.stepping:
+                monitor.within_step()
+            return fun(t, y)
+
+        super().__init__(watched, *arguments, **options)
 
     def step(self) -> str | None:
         """One step of the solver; failed if the solver fails or the monitor objects."""
         self.steps_left = self.monitor.budget.steps - self.monitor.steps
+        self.stepping = True
         try:
             with np.errstate(all="ignore"):
                 message = super().step()
+        except StepAbandonedError:
+            self.status = "failed"
+            return self.monitor.message
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
             self.status = "failed"
             return self.monitor.stop(Outcome.DIVERGED, f"{error} after t = {self.t:.6g} s")
