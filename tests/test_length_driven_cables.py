@@ -106,7 +106,7 @@ def test_motion_with_a_cable_that_goes_slack_and_catches_keeps_its_ledger() -> N
 def test_jump_of_the_length_puts_its_work_into_the_ledger() -> None:
     scenario = load_scenario(SCENARIOS / "length_driven.toml")
     steps = (Step(0.0, 5e-4, at=0.01), Step(0.0, -1e-3, at=0.01))
-    motion = simulate(replace(scenario, tension=steps)).trajectory
+    motion = simulate(replace(scenario, drives=steps)).trajectory
     assert motion is not None
     work = motion.ledger["input_work"]
     assert np.diff(work).max() > 0.5 * STIFFNESS * 4e-4**2
