@@ -115,21 +115,21 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         effects.append(CableFriction())
     if file.loads:
         effects.append(DiskLoads(loads=tuple(map(_load, file.loads))))
-    tension = tuple(_ramp_or_profile(*_drive(cable), path, is_ramp) for cable in file.cables)
+    drives = tuple(_ramp_or_profile(*_drive(cable), path, is_ramp) for cable in file.cables)
     factors = tuple(
         _ramp_or_profile(load.factor, "factor", path, is_ramp, "loads")
         for load in file.loads
         if load.factor is not None
     )
     if is_ramp:
-        repeated = _repeated((*tension, *factors))
-        tension, factors = repeated[: len(tension)], repeated[len(tension) :]
+        repeated = _repeated((*drives, *factors))
+        drives, factors = repeated[: len(drives)], repeated[len(drives) :]
     motion = _base_motion(file.base, path) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
     return Scenario(
         scene=Scene(replace(_arm(file), base=base), effects),
-        tension=tension,
+        drives=drives,
         study=file.study,
         solver=file.solver,
         accuracy=file.accuracy,

@@ -162,7 +162,7 @@ def _statics(scenario: Scenario, budget: Budget, interruption: Interruption) -> 
             solver.warm_up()
     except KeyboardInterrupt:
         return _interrupted_early(scenario)
-    inputs = scenario.initial_tension[None, :]
+    inputs = scenario.initial_inputs[None, :]
     if isinstance(scenario.study, RampStudy):
         ramps = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
         inputs = np.hstack([ramps, np.tile(inputs[:, ramps.shape[1] :], (len(ramps), 1))])
@@ -264,9 +264,9 @@ def _motion(
         return _interrupted_early(scenario)
     stretches = spans(scenario.profiles, study.duration)
     started = time.perf_counter()
-    start = statics.solve(scenario.initial_tension)
+    start = statics.solve(scenario.initial_inputs)
     if not start.found:
-        limit = _limit(statics, start, scenario.initial_tension, None)
+        limit = _limit(statics, start, scenario.initial_inputs, None)
         solve_time = time.perf_counter() - started
         return Run(scenario, start.outcome, why(start, None, limit), [start], solve_time=solve_time)
     y = dynamics.state(start.coordinates)
