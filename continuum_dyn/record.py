@@ -27,7 +27,7 @@ from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
 
 FORMAT = "continuum-dyn log"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 
 _DIMENSIONS = {
     **dict.fromkeys(("bend_angle", "bend_angle_rate", "elongation", "elongation_rate"), "segment"),
@@ -65,13 +65,17 @@ _PER_POINT = (
 
 @dataclass(frozen=True)
 class Log:
-    """A log read back: arrays by glossary name; ``trajectory`` is empty where nothing moved."""
+    """A log read back: arrays by glossary name; ``trajectory`` is empty where nothing moved.
+
+    ``scenario`` is the text of the scenario's file, ``tables`` those of the CSV files that it names.
+    """
 
     path: Path
     title: str
     outcome: Outcome
     message: str
     scenario: str
+    tables: Mapping[str, str]
     attributes: Mapping[str, Any]
     cables: tuple[str, ...]
     arm: Mapping[str, np.ndarray]
@@ -148,6 +152,7 @@ def _whole_file(path: Path) -> Iterator[h5py.File]:
 
 def _write(file: h5py.File, run: Run) -> None:
     file.attrs.update(_root_attributes(run))
+    _write_tables(file.create_group("tables"), run.scenario.tables)
     _write_arm(file.create_group("arm"), run.scenario)
     numbers, points, times = _points(run)
     if points:
@@ -185,6 +190,14 @@ def _root_attributes(run: Run) -> dict[str, Any]:
     if run.mesh is not None:
         attributes |= {"mesh_error": run.mesh.estimate, "mesh_extrapolated": run.mesh.extrapolated}
     return attributes
+
+
+def _write_tables(group: h5py.Group, tables: Mapping[str, str]) -> None:
+    """Each text in UTF-8, as it was read; its name in the scenario, which may be a path, as an attribute."""
+    for number, (name, text) in enumerate(tables.items(), start=1):
+        content = np.frombuffer(text.encode(), dtype=np.uint8)
+        dataset = group.create_dataset(str(number), data=content, compression="gzip", shuffle=True)
+        dataset.attrs["file"] = name
 
 
 def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
@@ -295,6 +308,7 @@ def _read(file: h5py.File, path: Path) -> Log:
         outcome=Outcome(attributes["outcome"]),
         message=attributes["message"],
         scenario=attributes["scenario"],
+        tables={table.attrs["file"]: table[()].tobytes().decode() for table in file["tables"].values()},
         attributes=attributes,
         cables=tuple(name.decode() for name in file["arm/cable"][()]),
         arm=dict(file["arm"].attrs) | _arrays(file["arm"]),
