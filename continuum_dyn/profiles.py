@@ -8,6 +8,7 @@ from its start to the next one's, so its derivative is a piece, too. At a jump t
 """
 
 import dataclasses
+from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import pairwise
 from math import pi, sin
@@ -276,9 +277,10 @@ def _goes_on(before: Span, span: Span) -> bool:
 
 def inputs_of(joined: Sequence[Span], time: np.ndarray) -> np.ndarray:
     """Values at increasing times within consecutive spans, shape (times, profiles); later spans count."""
-    edges = np.searchsorted(time, [span.start for span in joined[1:]])
+    if not time.size:
+        return joined[0].inputs(time)
+    first, last = (bisect_right(joined, float(t), key=lambda span: span.start) for t in (time[0], time[-1]))
+    known = joined[max(first - 1, 0) : max(last, 1)]
+    edges = np.searchsorted(time, [span.start for span in known[1:]])
     parts = np.split(time, edges)
-    return np.concatenate(
-        [span.inputs(part) for span, part in zip(joined, parts, strict=True) if part.size]
-        or [joined[0].inputs(time)]
-    )
+    return np.concatenate([span.inputs(part) for span, part in zip(known, parts, strict=True)])

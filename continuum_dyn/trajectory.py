@@ -1,5 +1,6 @@
 """A motion at its samples."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -74,6 +75,20 @@ class Trajectory:
         """
         stored = self.stored_energy
         return stored - stored[0] - self.ledger["input_work"] + self.ledger["dissipated_energy"]
+
+
+def joined(blocks: Sequence[Trajectory], counters: dict[str, int]) -> Trajectory:
+    """One trajectory of several that follow each other."""
+    first = blocks[0]
+    if len(blocks) == 1:
+        return replace(first, counters=counters)
+    columns = {
+        name: np.concatenate([getattr(block, name) for block in blocks])
+        for name, value in vars(first).items()
+        if isinstance(value, np.ndarray)
+    }
+    ledger = {name: np.concatenate([block.ledger[name] for block in blocks]) for name in first.ledger}
+    return replace(first, **columns, ledger=ledger, counters=counters)
 
 
 def trajectory_of(
