@@ -3,13 +3,14 @@
 import json
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Folder, Overrides
 from continuum_dyn.commands.show import length, make_folder
 from statics.errors import InputError
 from statics.interruption import held
@@ -32,7 +33,8 @@ def run(
     files: Annotated[
         list[Path], typer.Argument(metavar="FILE...", help="Scenario files (TOML).", show_default=False)
     ],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the logs.")] = Path("logs"),
+    overrides: Overrides = None,
+    out: Folder = Path("logs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
 ) -> None:
     """Simulate scenarios and log them.
@@ -41,7 +43,7 @@ def run(
     answer), 1 not answered (no stable equilibrium, geometric limit, diverged, budget exceeded),
     2 bad input, 130 interrupted.
     """
-    scenarios = _load(files)
+    scenarios = _load(files, overrides or ())
     make_folder(out)
     statuses = []
     for path, scenario in scenarios:
@@ -57,14 +59,14 @@ def run(
     raise typer.Exit(max(statuses))
 
 
-def _load(files: list[Path]) -> "list[tuple[Path, Scenario]]":
+def _load(files: list[Path], overrides: Sequence[str]) -> "list[tuple[Path, Scenario]]":
     """All scenarios, checked before the first one runs."""
     from continuum_dyn.scenario import load_scenario
 
     for stem, count in Counter(path.stem for path in files).items():
         if count > 1:
             raise InputError(f"{count} files are named '{stem}'; their logs would overwrite each other.")
-    return [(path, load_scenario(path)) for path in files]
+    return [(path, load_scenario(path, overrides)) for path in files]
 
 
 def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[str, Any]:
