@@ -17,7 +17,7 @@ from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Span, inputs_of, joined_spans
-from continuum_dyn.samples import Listener, Samples
+from continuum_dyn.samples import Samples
 from continuum_dyn.study import Solver
 from continuum_dyn.trajectory import Trajectory
 from statics.outcome import Outcome
@@ -88,22 +88,24 @@ def integrate(
     y: np.ndarray,
     solver: Solver,
     monitor: Monitor,
-    listener: Listener | None = None,
+    gathered: Samples | None = None,
 ) -> Trajectory:
     """The motion from state ``y`` over all spans, at ``samples`` (s; both ends included).
 
-    A run that the monitor stops early keeps the samples up to there, and the last acceptable state. What is
-    computed is told to the ``listener`` as it goes, but for the end. Raises ``InputError`` where the method
-    cannot integrate the scene.
+    They join those that are ``gathered`` already. A run that the monitor stops early keeps the samples up to
+    there, and the last acceptable state. Raises ``InputError`` where the method cannot integrate the scene.
     """
     check(dynamics.scene, solver.method)
-    monitor.reached = (stretches[0].start, y)
+    start = stretches[0].start
+    monitor.reached = (start, y)
     steps, rejections = monitor.steps, monitor.rejections
     solver = with_step(dynamics, solver, stretches, y)
-    gathered = Samples(dynamics, listener)
-    gathered.add(samples[:1], y[None, :], stretches[0].inputs(samples[:1]))
+    gathered = gathered or Samples(dynamics)
+    samples = samples[samples > gathered.latest]
+    done = int(np.searchsorted(samples, start, side="right"))
+    gathered.add(samples[:done], np.tile(y, (done, 1)), stretches[0].inputs(samples[:done]))
     counters: Counter[str] = Counter()
-    before, done = None, 1
+    before = None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for joined in _joined(dynamics, solver, stretches):
@@ -168,7 +170,12 @@ def _joined(dynamics: Dynamics, solver: Solver, stretches: list[Span]) -> list[l
 
 
 def _solve(
-    dynamics: Dynamics, solver: Solver, joined: list[Span], at: np.ndarray, monitor: Monitor, gathered: Samples
+    dynamics: Dynamics,
+    solver: Solver,
+    joined: list[Span],
+    at: np.ndarray,
+    monitor: Monitor,
+    gathered: Samples,
 ) -> OdeSolver:
     """The solver after its last step from where the monitor is; states at the times ``at`` are gathered.
 

@@ -257,6 +257,12 @@ def spans(profiles: Sequence[InPieces], duration: float) -> list[Span]:
     return result
 
 
+def spans_from(stretches: Sequence[Span], time: float) -> list[Span]:
+    """What of the spans comes after a time (s)."""
+    left = [span for span in stretches if span.end > time]
+    return [dataclasses.replace(span, start=max(span.start, time)) for span in left]
+
+
 def joined_spans(stretches: Sequence[Span]) -> list[list[Span]]:
     """The spans in groups within which no input jumps and no wave sets in."""
     groups = [[stretches[0]]]
