@@ -58,8 +58,15 @@ class Trajectory:
 
     def first(self, count: int) -> "Trajectory":
         """That many samples from the start on."""
-        cut = {name: value[:count] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        return replace(self, **cut, ledger={name: value[:count] for name, value in self.ledger.items()})
+        return self._part(slice(0, count))
+
+    def after(self, count: int) -> "Trajectory":
+        """The samples after that many."""
+        return self._part(slice(count, None))
+
+    def _part(self, rows: slice) -> "Trajectory":
+        cut = {name: value[rows] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        return replace(self, **cut, ledger={name: value[rows] for name, value in self.ledger.items()})
 
     @property
     def stored_energy(self) -> np.ndarray:
