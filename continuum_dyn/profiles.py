@@ -27,6 +27,12 @@ TIME_RESOLUTION = 1e-300
 SAME = 1e-12
 """Part of a value by which rounding may part the two pieces that meet in it."""
 
+Value = Annotated[float, Field(description="value at all times, in the unit of what is driven")]
+Before = Annotated[float, Field(description="value until then, in the unit of what is driven")]
+After = Annotated[float, Field(description="value from then on, in the unit of what is driven")]
+Start = Annotated[NonNegative, Field(description="time at which the ramp starts, s")]
+End = Annotated[Positive, Field(description="time at which the ramp ends, s")]
+
 Piece = tuple[float, float, float, float, float, float]
 """Start (s), value, slope (1/s), amplitude, angular frequency (rad/s), phase; values in N for a tension."""
 
@@ -40,7 +46,7 @@ def straight(start: float, value: float, slope: float = 0.0) -> Piece:
 class Constant:
     """``value`` at all times."""
 
-    value: float
+    value: Value
     profile: Literal["constant"] = "constant"
 
     @property
@@ -60,9 +66,9 @@ class Step:
     With ``at`` = 0 the arm starts from the equilibrium of ``before``.
     """
 
-    before: float
-    after: float
-    at: NonNegative = 0.0
+    before: Before
+    after: After
+    at: Annotated[NonNegative, Field(description="time of the step, s")] = 0.0
     profile: Literal["step"] = "step"
 
     @property
@@ -80,10 +86,10 @@ class Step:
 class Ramp:
     """``before`` until ``start``, ``after`` from ``end`` on, linear between."""
 
-    before: float
-    after: float
-    start: NonNegative
-    end: Positive
+    before: Before
+    after: After
+    start: Start
+    end: End
     profile: Literal["ramp"] = "ramp"
 
     def __post_init__(self) -> None:
@@ -108,10 +114,10 @@ class SmoothRamp:
     It has no jump and no corner; its second derivative jumps at both ends.
     """
 
-    before: float
-    after: float
-    start: NonNegative
-    end: Positive
+    before: Before
+    after: After
+    start: Start
+    end: End
     profile: Literal["smooth_ramp"] = "smooth_ramp"
 
     def __post_init__(self) -> None:
@@ -141,10 +147,10 @@ def _check_order(start: float, end: float) -> None:
 class Sine:
     """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t + ``phase``); ``phase`` in rad."""
 
-    mean: float
-    amplitude: float
-    frequency: Positive
-    phase: float = 0.0
+    mean: Annotated[float, Field(description="mean value, in the unit of what is driven")]
+    amplitude: Annotated[float, Field(description="amplitude, in the unit of what is driven")]
+    frequency: Annotated[Positive, Field(description="frequency, Hz")]
+    phase: Annotated[float, Field(description="phase at the start, rad")] = 0.0
     profile: Literal["sine"] = "sine"
 
     @property

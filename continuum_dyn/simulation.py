@@ -30,6 +30,7 @@ from statics.equilibria import Equilibrium, StaticSolver
 from statics.interruption import Interruption, allowed, held
 from statics.outcome import Outcome
 from statics.ramp import limit_on_the_way, ramp
+from statics.stages import stage
 
 TIME_PART = 0.25
 """Part of the accuracy that a mesh's integration may use up; two extrapolated use nearly twice that."""
@@ -177,7 +178,7 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
 
 def _statics(scenario: Scenario, interruption: Interruption) -> Run:
     try:
-        with allowed():
+        with allowed(), stage("kernels of statics"):
             solver = StaticSolver(scenario.scene)
             solver.warm_up()
     except KeyboardInterrupt:
@@ -193,7 +194,8 @@ def _statics(scenario: Scenario, interruption: Interruption) -> Run:
         path = follow(solver, inputs)
         solve_time = time.perf_counter() - started
         return Run(scenario, path.outcome, told_of_path(path), path.points, solve_time=solve_time)
-    points = ramp(solver, interruption.until_asked(inputs))
+    with stage("equilibria"):
+        points = ramp(solver, interruption.until_asked(inputs))
     solve_time = time.perf_counter() - started
     message, growths = told_of_points(points), [None] * len(points)
     if any(point.stable is None for point in points):
@@ -251,7 +253,7 @@ def _motion(
     begun: Begun | None,
 ) -> Run:
     try:
-        with allowed():
+        with allowed(), stage("kernels of statics and dynamics"):
             statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
             statics.warm_up()
     except KeyboardInterrupt:
@@ -265,7 +267,7 @@ def _motion(
         return Run(scenario, start.outcome, why(start, None, limit), [start], solve_time=solve_time)
     y = dynamics.state(start.coordinates)
     try:
-        with allowed():
+        with allowed(), stage("choice of the method, and its kernels"):
             solver = begun.solver if begun else _settled_on(scenario, study, dynamics, y, stretches)
             warm_up(dynamics, solver, stretches[0])
     except KeyboardInterrupt:
@@ -278,12 +280,13 @@ def _motion(
         interruption=interruption,
     )
     so_far = Run(scenario, Outcome.INTERRUPTED, "broken off while it ran", [start], solver=solver)
-    if scenario.accuracy is not None:
-        moved = _moved_accurately(so_far, dynamics, stretches, y, monitor, sink)
-    elif begun is not None:
-        moved = _Moved(_moved_on(so_far, begun, dynamics, stretches, monitor, sink), solver, None)
-    else:
-        moved = _Moved(_moved(so_far, dynamics, stretches, y, monitor, sink), solver, None)
+    with stage(f"motion by {solver.method}"):
+        if scenario.accuracy is not None:
+            moved = _moved_accurately(so_far, dynamics, stretches, y, monitor, sink)
+        elif begun is not None:
+            moved = _Moved(_moved_on(so_far, begun, dynamics, stretches, monitor, sink), solver, None)
+        else:
+            moved = _Moved(_moved(so_far, dynamics, stretches, y, monitor, sink), solver, None)
     _check_energies(scenario, moved, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)
