@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from continuum_dyn.commands import cost, explain, hard, init, modes, play, reproduce, run, schema
+from continuum_dyn.commands import cost, explain, hard, init, modes, play, reproduce, resume, run, schema
 from continuum_dyn.commands.shared_options import (
     Quiet,
     Verbose,
@@ -24,6 +24,7 @@ INTERRUPTED = 130
 
 COMMANDS = (
     ("Simulate and look", run.run),
+    ("Simulate and look", resume.resume),
     ("Simulate and look", play.play),
     ("Understand", explain.explain),
     ("Understand", modes.modes),
