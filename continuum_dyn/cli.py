@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from continuum_dyn.commands import cost, explain, hard, modes, play, reproduce, run
+from continuum_dyn.commands import cost, explain, hard, modes, play, reproduce, run, settle
 from statics.errors import ContinuumError
 from statics.kernel_files import no_cache
 
@@ -53,7 +53,16 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
     return guarded
 
 
-for _command in (run.run, play.play, explain.explain, modes.modes, cost.cost, hard.hard, reproduce.reproduce):
+for _command in (
+    run.run,
+    play.play,
+    settle.settle,
+    explain.explain,
+    modes.modes,
+    cost.cost,
+    hard.hard,
+    reproduce.reproduce,
+):
     app.command()(with_exit_status(_command))
 
 
