@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from continuum_dyn.commands import cost, explain, hard, modes, play, reproduce, run, settle
+from continuum_dyn.commands import cost, explain, hard, modes, play, ramp, reproduce, run, settle
 from statics.errors import ContinuumError
 from statics.kernel_files import no_cache
 
@@ -57,6 +57,7 @@ for _command in (
     run.run,
     play.play,
     settle.settle,
+    ramp.ramp,
     explain.explain,
     modes.modes,
     cost.cost,

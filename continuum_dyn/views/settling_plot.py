@@ -38,7 +38,7 @@ def _since(found: Settling, clock: Axis) -> np.ndarray:
 
 def _draw_tip(axes: Any, found: Settling, clock: Axis, place: Axis) -> None:
     travel = place.per_si * found.travel
-    for (name, band), shade, height in zip(BANDS.items(), SHADES, (0.02, 0.08, 0.14), strict=True):
+    for (name, band), shade, height in zip(BANDS.items(), SHADES, (0.98, 0.92, 0.86), strict=True):
         axes.axhspan(
             (1 - band) * travel, (1 + band) * travel, color=shade, lw=0, label=f"{100 * band:g} % band"
         )
@@ -52,6 +52,7 @@ def _draw_tip(axes: Any, found: Settling, clock: Axis, place: Axis) -> None:
                 xytext=(3, 0),
                 textcoords="offset points",
                 fontsize=8,
+                va="top",
             )
     axes.axhline(travel, color="C3", lw=1.2, ls="--", label="static equilibrium")
     axes.plot(_since(found, clock), place.per_si * found.along, "k-", lw=1.2, label="motion")
