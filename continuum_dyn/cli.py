@@ -17,6 +17,7 @@ from continuum_dyn.commands.shared_options import (
     WithoutCache,
     with_shared_options,
 )
+from continuum_dyn.extras import extras_named
 from statics.errors import ContinuumError
 
 BAD_INPUT = 2
@@ -88,7 +89,8 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def guarded(*arguments: Any, **options: Any) -> None:
         try:
-            command(*arguments, **options)
+            with extras_named():
+                command(*arguments, **options)
         except ContinuumError as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(BAD_INPUT) from error

@@ -13,6 +13,7 @@ import typer
 from continuum_dyn.commands.arguments import Folder, Overrides
 from continuum_dyn.commands.show import length, make_folder
 from continuum_dyn.commands.verbosity import shows_progress
+from continuum_dyn.extras import MissingExtraError
 from statics.errors import InputError
 from statics.interruption import held
 from statics.stages import stage
@@ -73,23 +74,36 @@ def _load(files: list[Path], overrides: Sequence[str]) -> "list[tuple[Path, Scen
 
 
 def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[str, Any]:
-    from continuum_dyn.record import read_log, write_log
+    from continuum_dyn.record import write_log
     from continuum_dyn.simulation import simulate
-    from continuum_dyn.views import rerun_view
 
     started = time.perf_counter()
     with _progress(scenario.title, quiet) as progress:
         result = simulate(scenario, progress)
-    log, recording = out / f"{path.stem}.h5", out / f"{path.stem}.rrd"
+    log = out / f"{path.stem}.h5"
     with stage("log written"):
         write_log(result, log)
     with stage("recording written"):
-        rerun_view.save(read_log(log), recording)
+        recording, without = _recording(log)
     wall_time = time.perf_counter() - started
-    return {"run": result, "log": log, "record": _record(path, result, log, recording, wall_time)}
+    record = _record(path, result, log, recording, wall_time)
+    return {"run": result, "log": log, "without_recording": without, "record": record}
 
 
-def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: float) -> dict[str, Any]:
+def _recording(log: Path) -> tuple[Path | None, str]:
+    """The recording that is written beside a log; or none, and why."""
+    from continuum_dyn.record import read_log
+
+    try:
+        from continuum_dyn.views import rerun_view
+    except MissingExtraError as missing:
+        return None, str(missing)
+    recording = log.with_suffix(".rrd")
+    rerun_view.save(read_log(log), recording)
+    return recording, ""
+
+
+def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_time: float) -> dict[str, Any]:
     """What ``--json`` prints; ``tip`` is x, y (m), theta (rad), times are in s, ``static_gap`` in m."""
     arm = result.scenario.scene.arm
     record: dict[str, Any] = {
@@ -104,7 +118,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
         "solve_time": result.solve_time,
         "wall_time": wall_time,
         "log": str(log),
-        "recording": str(recording),
+        "recording": None if recording is None else str(recording),
     }
     if result.trajectory is not None:
         record["method"] = result.solver.method if result.solver else None
@@ -175,7 +189,11 @@ def _show(report: dict[str, Any]) -> None:
     if result.tip_error is not None:
         table.add_row("accuracy", _accuracy(result, result.tip_error))
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
-    table.add_row("log", f"{report['log']}  (play it: continuum-dyn play {report['log']})")
+    table.add_row("log", str(report["log"]))
+    if report["without_recording"]:
+        table.add_row("recording", f"none; {escape(report['without_recording'])}")
+    else:
+        table.add_row("play it", f"continuum-dyn play {report['log']}")
     console = Console(highlight=False)
     console.print(table)
     points = [point for point in result.equilibria if point.found]
