@@ -17,6 +17,7 @@ from continuum_dyn.commands.shared_options import (
     WithoutCache,
     with_shared_options,
 )
+from continuum_dyn.commands.show import wrapped
 from continuum_dyn.extras import extras_named
 from statics.errors import ContinuumError
 
@@ -92,7 +93,7 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
             with extras_named():
                 command(*arguments, **options)
         except ContinuumError as error:
-            typer.echo(f"error: {error}", err=True)
+            typer.echo(wrapped(f"error: {error}"), err=True)
             raise typer.Exit(BAD_INPUT) from error
         except KeyboardInterrupt as error:
             typer.echo("interrupted", err=True)

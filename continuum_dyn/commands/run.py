@@ -144,7 +144,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_t
 
 @contextmanager
 def _progress(title: str, quiet: bool) -> Iterator[Any]:
-    """A progress bar on a terminal; it only pulses while kernels are compiled, which happens once."""
+    """A progress bar on a terminal; while kernels are compiled it only pulses, and says why."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -154,13 +154,13 @@ def _progress(title: str, quiet: bool) -> Iterator[Any]:
         return
     latest = time.monotonic()
     with Progress(console=console, transient=True) as bar:
-        task = bar.add_task(title, total=None)
+        task = bar.add_task(f"{title}: loading its kernels, or compiling new ones", total=None)
 
         def update(fraction: float) -> None:
             nonlocal latest
             if time.monotonic() - latest > BAR_INTERVAL:
                 latest = time.monotonic()
-                bar.update(task, total=1.0, completed=fraction)
+                bar.update(task, description=title, total=1.0, completed=fraction)
 
         yield update
 
