@@ -8,6 +8,7 @@ from its start to the next one's, so its derivative is a piece, too. At a jump t
 """
 
 import dataclasses
+from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import pairwise
 from math import pi, sin
@@ -262,6 +263,12 @@ def spans(profiles: Sequence[InPieces], duration: float) -> list[Span]:
     return result
 
 
+def spans_from(stretches: Sequence[Span], time: float) -> list[Span]:
+    """What of the spans comes after a time (s)."""
+    left = [span for span in stretches if span.end > time]
+    return [dataclasses.replace(span, start=max(span.start, time)) for span in left]
+
+
 def joined_spans(stretches: Sequence[Span]) -> list[list[Span]]:
     """The spans in groups within which no input jumps and no wave sets in."""
     groups = [[stretches[0]]]
@@ -282,9 +289,10 @@ def _goes_on(before: Span, span: Span) -> bool:
 
 def inputs_of(joined: Sequence[Span], time: np.ndarray) -> np.ndarray:
     """Values at increasing times within consecutive spans, shape (times, profiles); later spans count."""
-    edges = np.searchsorted(time, [span.start for span in joined[1:]])
+    if not time.size:
+        return joined[0].inputs(time)
+    first, last = (bisect_right(joined, float(t), key=lambda span: span.start) for t in (time[0], time[-1]))
+    known = joined[max(first - 1, 0) : max(last, 1)]
+    edges = np.searchsorted(time, [span.start for span in known[1:]])
     parts = np.split(time, edges)
-    return np.concatenate(
-        [span.inputs(part) for span, part in zip(joined, parts, strict=True) if part.size]
-        or [joined[0].inputs(time)]
-    )
+    return np.concatenate([span.inputs(part) for span, part in zip(known, parts, strict=True)])

@@ -1,6 +1,7 @@
 """What is asked of a scene: the kinds of study, the solver's settings, and the scenario that joins them."""
 
 import dataclasses
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -147,9 +148,10 @@ class Scenario:
     """A scene, the tension of each of its cables, and what is asked of it.
 
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
-    ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
-    program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. ``load_factors``
-    has likewise a profile or a list for each driven load, ``base_motion`` profiles of x, y (m) and angle
+    ``text`` is the file that it was read from, ``tables`` those of the CSV files beside it, by name. With
+    ``accuracy`` the solver's tolerances are the program's to choose; with ``chooses_mesh`` the number of the
+    arm's sub-segments, too. ``load_factors`` has likewise a profile or a list for each driven load,
+    ``base_motion`` profiles of x, y (m) and angle
     (rad) of a base that moves. Raises ``InputError`` where these do not fit.
     """
 
@@ -163,6 +165,7 @@ class Scenario:
     base_motion: tuple[Profile, ...] = ()
     title: str = ""
     text: str = ""
+    tables: Mapping[str, str] = dataclasses.field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         if len(self.tension) != self.scene.cables:
