@@ -55,6 +55,8 @@ def test_without_rerun_json_has_no_recording(tmp_path: Path, monkeypatch: pytest
         ("matplotlib", ["modes", STEP]),
         ("matplotlib", ["cost", STEP]),
         ("matplotlib", ["reproduce", "rone2012"]),
+        ("matplotlib", ["settle", "none.h5"]),
+        ("matplotlib", ["ramp", "none.h5"]),
     ],
 )
 def test_what_needs_an_extra_names_it_before_anything_is_computed(
@@ -68,7 +70,15 @@ def test_what_needs_an_extra_names_it_before_anything_is_computed(
     )
 
 
-@pytest.mark.parametrize(("package", "module"), [("rerun", "rerun_view"), ("matplotlib", "plots")])
+VIEWS = [
+    ("rerun", "rerun_view"),
+    ("matplotlib", "plots"),
+    ("matplotlib", "ramp_plot"),
+    ("matplotlib", "settling_plot"),
+]
+
+
+@pytest.mark.parametrize(("package", "module"), VIEWS)
 def test_views_raise_an_error_of_the_program(
     package: str, module: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
