@@ -8,6 +8,7 @@ from its start to the next one's, so its derivative is a piece, too. At a jump t
 """
 
 import dataclasses
+from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import pairwise
 from math import pi, sin
@@ -102,8 +103,7 @@ class Ramp:
     def pieces(self) -> list[Piece]:
         """Three pieces, or two if the ramp starts at time zero."""
         slope = (self.after - self.before) / (self.end - self.start)
-        rising = [straight(self.start, self.before, slope), straight(self.end, self.after)]
-        return [straight(0.0, self.before), *rising] if self.start > 0 else rising
+        return _from_rest_to_rest(self, straight(self.start, self.before, slope))
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -130,16 +130,19 @@ class SmoothRamp:
     def pieces(self) -> list[Piece]:
         """Three pieces, or two if the ramp starts at time zero."""
         mean, amplitude = (self.before + self.after) / 2, (self.after - self.before) / 2
-        rising = [
-            (self.start, mean, 0.0, amplitude, pi / (self.end - self.start), -pi / 2),
-            straight(self.end, self.after),
-        ]
-        return [straight(0.0, self.before), *rising] if self.start > 0 else rising
+        rise = self.start, mean, 0.0, amplitude, pi / (self.end - self.start), -pi / 2
+        return _from_rest_to_rest(self, rise)
 
 
 def _check_order(start: float, end: float) -> None:
     if end <= start:
         raise InputError(f"a ramp must end after it starts; start is {start:g} s, end {end:g} s")
+
+
+def _from_rest_to_rest(ramp: Ramp | SmoothRamp, rise: Piece) -> list[Piece]:
+    """The rise between the values that hold before it, if there is time before it, and after it."""
+    rising = [rise, straight(ramp.end, ramp.after)]
+    return [straight(0.0, ramp.before), *rising] if ramp.start > 0 else rising
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -262,6 +265,12 @@ def spans(profiles: Sequence[InPieces], duration: float) -> list[Span]:
     return result
 
 
+def spans_from(stretches: Sequence[Span], time: float) -> list[Span]:
+    """What of the spans comes after a time (s)."""
+    left = [span for span in stretches if span.end > time]
+    return [dataclasses.replace(span, start=max(span.start, time)) for span in left]
+
+
 def joined_spans(stretches: Sequence[Span]) -> list[list[Span]]:
     """The spans in groups within which no input jumps and no wave sets in."""
     groups = [[stretches[0]]]
@@ -282,9 +291,10 @@ def _goes_on(before: Span, span: Span) -> bool:
 
 def inputs_of(joined: Sequence[Span], time: np.ndarray) -> np.ndarray:
     """Values at increasing times within consecutive spans, shape (times, profiles); later spans count."""
-    edges = np.searchsorted(time, [span.start for span in joined[1:]])
+    if not time.size:
+        return joined[0].inputs(time)
+    first, last = (bisect_right(joined, float(t), key=lambda span: span.start) for t in (time[0], time[-1]))
+    known = joined[max(first - 1, 0) : max(last, 1)]
+    edges = np.searchsorted(time, [span.start for span in known[1:]])
     parts = np.split(time, edges)
-    return np.concatenate(
-        [span.inputs(part) for span, part in zip(joined, parts, strict=True) if part.size]
-        or [joined[0].inputs(time)]
-    )
+    return np.concatenate([span.inputs(part) for span, part in zip(known, parts, strict=True)])

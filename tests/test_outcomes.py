@@ -218,7 +218,7 @@ def test_exit_status_follows_the_outcome(outcome: str, status: int) -> None:
 
 @pytest.mark.parametrize("tension", [(), (Constant(1.0), Constant(1.0))])
 def test_scenario_needs_a_tension_for_each_cable(tension: tuple[Profile, ...]) -> None:
-    with pytest.raises(InputError, match="tensions given for 1 cable"):
+    with pytest.raises(InputError, match="tensions or displacements given for 1 cable"):
         Scenario(rone2012(), tension, MotionStudy(1.0))
 
 
