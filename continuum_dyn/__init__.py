@@ -1,10 +1,8 @@
-"""Dynamics of planar cable-driven continuum arms by virtual power (Kane's method).
+"""Dynamics of planar cable-driven continuum arms by virtual power (Kane's method)."""
 
-What is exported is loaded when it is first asked for.
-"""
+from typing import TYPE_CHECKING
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from statics.lazy_names import loaded_when_asked_for
 
 if TYPE_CHECKING:
     from continuum_dyn.scenario import load_scenario
@@ -14,16 +12,4 @@ if TYPE_CHECKING:
 
 __all__ = ["Run", "Scenario", "Trajectory", "load_scenario", "simulate"]
 
-_HOMES = {
-    "Run": "simulation",
-    "Scenario": "study",
-    "Trajectory": "trajectory",
-    "load_scenario": "scenario",
-    "simulate": "simulation",
-}
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+__getattr__ = loaded_when_asked_for(__file__)
