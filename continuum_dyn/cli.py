@@ -17,6 +17,7 @@ from continuum_dyn.commands import (
     init,
     modes,
     play,
+    plot,
     ramp,
     reproduce,
     resume,
@@ -41,6 +42,7 @@ COMMANDS = (
     ("Simulate and look", run.run),
     ("Simulate and look", resume.resume),
     ("Simulate and look", play.play),
+    ("Simulate and look", plot.plot),
     ("Ask a log", settle.settle),
     ("Ask a log", ramp.ramp),
     ("Understand", explain.explain),
@@ -135,10 +137,19 @@ for _panel, _command in COMMANDS:
 
 
 def main() -> None:
-    """Entry point of ``continuum-dyn``."""
+    """Run the command line. After Ctrl-C, whatever that comes out as, the exit status is ``INTERRUPTED``."""
+    presses = []
+
+    def interrupt(_signal: int, _frame: object) -> None:
+        presses.append(_signal)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
     try:
         app()
-    except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
+    except BaseException:
+        if presses:
+            sys.exit(INTERRUPTED)
+        raise
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is said and on disk

@@ -89,7 +89,7 @@ def _print_method(scenario: Any) -> None:
     if not isinstance(scenario.study, MotionStudy) or scenario.solver.method != "auto":
         return
     dynamics = Dynamics(scenario.scene)
-    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_tension).coordinates)
+    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_inputs).coordinates)
     duration, exact = scenario.study.duration, scenario.accuracy is not None
     choice = choose(dynamics, start, spans(scenario.profiles, duration)[0], duration, exact)
     typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))

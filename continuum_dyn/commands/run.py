@@ -85,9 +85,10 @@ def _load(files: list[Path], overrides: Sequence[str], out: Path) -> list[Job]:
 
 
 def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
-    from continuum_dyn.logged_scenario import logged_scenario
-    from continuum_dyn.record import read_log
-    from continuum_dyn.scenario import load_scenario
+    with held():  # what Ctrl-C breaks off within the import of a library might come out as anything
+        from continuum_dyn.logged_scenario import logged_scenario
+        from continuum_dyn.record import read_log
+        from continuum_dyn.scenario import load_scenario
 
     if path.suffix != ".h5":
         return Job(path, load_scenario(path, overrides), out / f"{path.stem}.h5")
