@@ -232,7 +232,7 @@ def _profile(given: Any, path: Path, quantity: str) -> Profile:
     """A profile from a number, a table in the file, or a CSV file beside it."""
     if isinstance(given, float | int):
         return Constant(float(given))
-    return read_table(path, given.file, quantity) if isinstance(given, TableFile) else given
+    return read_table(path, given.file, quantity, given.periods) if isinstance(given, TableFile) else given
 
 
 def _base_motion(base: BaseTable, path: Path) -> tuple[Profile, ...]:

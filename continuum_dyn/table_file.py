@@ -2,7 +2,7 @@
 
 import csv
 from itertools import islice
-from math import inf
+from math import inf, nextafter
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -16,10 +16,11 @@ LARGEST = 1e30
 """Size of the largest number in a table."""
 
 
-def read_table(scenario: Path, name: str, quantity: str) -> Table:
+def read_table(scenario: Path, name: str, quantity: str, periods: int = 1) -> Table:
     """Read a table profile: CSV with the header ``time,tension`` (s, N), ``time,factor`` or the like.
 
-    Raises ``InputError`` that names the table and the row that is wrong.
+    The rows come ``periods`` times, one after the other. Raises ``InputError`` that names the table and the
+    row that is wrong.
     """
     folder = scenario.parent.resolve()
     path = (folder / name).resolve()
@@ -42,14 +43,35 @@ def read_table(scenario: Path, name: str, quantity: str) -> Table:
         raise InputError(
             f"table '{name}', row {negative[0]}: a cable cannot push; read {values[negative[0] - 1][1]:g}"
         )
+    rows = _repeated(name, values, periods)
     try:
-        return Table(tuple(t for t, _ in values), tuple(tau for _, tau in values))
+        return Table(tuple(t for t, _ in rows), tuple(tau for _, tau in rows))
     except InputError as error:
         raise InputError(f"table '{name}': {error}") from error
     except ValidationError as error:
         detail = error.errors()[0]
         row = int(detail["loc"][-1]) + 1
         raise InputError(f"table '{name}', row {row}: {detail['msg']}; read {detail['input']!r}") from error
+
+
+def _repeated(name: str, rows: list[tuple[float, float]], periods: int) -> list[tuple[float, float]]:
+    """The rows of all periods. Where a period ends in another value than it began the table jumps.
+
+    A jump is a pair of rows whose times are neighbours in floating point.
+    """
+    if periods == 1:
+        return rows
+    if len(rows) * periods > MAX_ROWS:
+        raise InputError(f"table '{name}': {periods} periods of {len(rows)} rows. Allowed: {MAX_ROWS} rows.")
+    (start, first), (end, last) = rows[0], rows[-1]
+    found = list(rows)
+    for number in range(1, periods):
+        later = start + number * (end - start)
+        found.pop()
+        if last != first:
+            found.append((nextafter(later, -inf), last))
+        found += [(later + (t - start), value) for t, value in rows]
+    return found
 
 
 def _rows(name: str, text: str) -> list[list[str]]:

@@ -72,7 +72,7 @@ def test_every_scenario_of_the_repository_loads_and_opens_with_what_it_shows(pat
         ("samples = 1001", "samples = 1000000000", "Ask for fewer samples"),
         ('"rone2012"', '"rone2012"\ndisks = 1000000000', "less than or equal to 10000; read 1000000000"),
         ('"rone2012"', '"rone2012"\ndisks = 0', "greater than or equal to 1"),
-        ('"rone2012"', '"rone2012"\ndisk_mass = -1', "greater than 0"),
+        ('"rone2012"', '"rone2012"\ndisk_mass = -1', "greater than or equal to 0"),
         ('"rone2012"', '"rone2012"\nyoungs_modulus = 0', "greater than 0"),
         ('"rone2012"', '"rone2012"\ncore_radius = 4e-4\narea = 5e-7', "core_radius already sets area"),
         ('"rone2012"', '"rone2012"\nreference_curvature = 125.0', "holes meet in the unloaded arm"),
