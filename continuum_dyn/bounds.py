@@ -2,13 +2,13 @@
 
 A step may displace no disk by more than a tolerance, (rtol + atol) times the arm's length. Where the motion
 does not make an error larger by itself, N steps leave at most N tolerances. A disk that is off by x under a
-force F has its energy off by F x; a motion whose largest way is s has the energy F s / 2. So, in parts of the
+force F has its energy off by F x; a motion whose travel, the largest of any disk, is s has the energy F s / 2. So, in parts of the
 largest energy, a step leaves 2 x / s in the power ledger and N steps N times as much.
 
     tip_error       N tolerances, times the amplification that the case states
-    ledger          2 N tolerances / way
+    ledger          2 N tolerances / travel
     energy_growth   twice the ledger's: what is stored less what is put in may rise by its error alone. Under
-                    inputs that stay what they are 20 tolerances / way: where damping is at work, only the few
+                    inputs that stay what they are 20 tolerances / travel: where damping is at work, only the few
                     steps about a turning point can add up
     settled_gap     10 tolerances: errors fade, with those of a step each; and what the case says still swings
     steps           what the case states
@@ -28,8 +28,6 @@ from continuum_dyn.trajectory import Trajectory
 
 ROUNDING = 1e-14
 """Part of the largest energy that a step may lose to rounding."""
-COMPARED = ("kinetic_energy", "input_work", "dissipated_energy")
-"""Energies, beside the range of what is stored, that others are parts of."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ def bounds_of(run: Run, expected: Expected, tip_error: float | None, whole: bool
     if method == "midpoint":
         return bounds
     step_error = (scenario.solver.rtol + scenario.solver.atol) * scenario.scene.arm.total_length
-    part = 2.0 * step_error / largest_way(motion)
+    part = 2.0 * step_error / max(motion.travel, 1e-300)
     ledger = steps * (part + ROUNDING)
     growth = 10.0 * (part + ROUNDING) if is_left_alone(scenario) else 2.0 * ledger
     bounds += [Bound("ledger", found["ledger"], ledger), Bound("energy_growth", found["energy_growth"], growth)]
@@ -92,12 +90,6 @@ def is_left_alone(scenario: Scenario) -> bool:
     return still and len(pieces) == len(scenario.profiles) and bool(dissipated_by(scenario.scene))
 
 
-def largest_way(motion: Trajectory) -> float:
-    """Largest distance of any disk from where it was at the start, m."""
-    away = np.hypot(motion.disk_x - motion.disk_x[0], motion.disk_y - motion.disk_y[0])
-    return max(float(away.max()), 1e-300)
-
-
 def energies(found: Trajectory) -> dict[str, float]:
     """The motion's ``ledger`` and ``energy_growth`` in parts of its largest energy, and its ``energy_trend``.
 
@@ -108,7 +100,7 @@ def energies(found: Trajectory) -> dict[str, float]:
     kinetic = found.ledger["kinetic_energy"]
     left = stored - found.ledger["input_work"]
     rise = float(np.max(left - np.minimum.accumulate(left)))
-    largest = max(float(np.ptp(stored)), *(float(np.abs(found.ledger[name]).max()) for name in COMPARED))
+    largest = found.largest_energy
     slope = np.polyfit(found.time - found.time.mean(), stored, 1)[0] if found.time.size > 1 else 0.0
     return {
         "ledger": _part(float(np.abs(found.ledger_gap).max()), largest),

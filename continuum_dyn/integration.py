@@ -46,10 +46,14 @@ def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
     brief = Span(span.start, span.start + BRIEF, span.pieces)
     y = dynamics.state(np.zeros((dynamics.scene.arm.segments, dynamics.dofs)))
     dynamics.clearance(y)
+    if solver.method in (*TABLEAUX, "midpoint"):
+        unwatched = Monitor(inspect=lambda _t, _y: None)
+        integrate(dynamics, [brief], np.array([brief.start, brief.end]), y, solver, unwatched)
+        return
+    dynamics.rate(span.start, y, span)
+    dynamics.observe(y[None, :], span.inputs(np.array([span.start])))
     if solver.method in IMPLICIT:
         dynamics.jacobian(span.start, y, span)
-    unwatched = Monitor(inspect=lambda _t, _y: None)
-    integrate(dynamics, [brief], np.array([brief.start, brief.end]), y, solver, unwatched)
 
 
 def add_jump(dynamics: Dynamics, before: Span, span: Span, monitor: Monitor) -> None:

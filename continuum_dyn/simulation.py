@@ -12,6 +12,7 @@ import numpy as np
 
 from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.energy_balance import broken_ledger
 from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
@@ -254,6 +255,7 @@ def _motion(
         interruption=interruption,
     )
     moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
+    _check_energies(scenario, moved, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)
     path = _static_path(statics, moved.trajectory, start, monitor) if study.static_path else []
@@ -273,6 +275,13 @@ def _motion(
         solve_time=solve_time,
     )
     return run if monitor.outcome else _compared(run, study, statics.branches(last, ends[-1]), growths[-1])
+
+
+def _check_energies(scenario: Scenario, moved: "_Moved", monitor: Monitor) -> None:
+    length = scenario.scene.arm.total_length
+    told = broken_ledger(moved.trajectory, (moved.solver.rtol + moved.solver.atol) * length)
+    if told is not None:
+        monitor.stop(Outcome.DIVERGED, told)
 
 
 def _end(

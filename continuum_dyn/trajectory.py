@@ -75,6 +75,18 @@ class Trajectory:
         stored = self.stored_energy
         return stored - stored[0] - self.ledger["input_work"] + self.ledger["dissipated_energy"]
 
+    @property
+    def largest_energy(self) -> float:
+        """The largest energy that moved, J: stored, kinetic, put in or dissipated."""
+        compared = ("kinetic_energy", "input_work", "dissipated_energy")
+        moved = (float(np.abs(self.ledger[name]).max()) for name in compared)
+        return max(float(np.ptp(self.stored_energy)), *moved)
+
+    @property
+    def travel(self) -> float:
+        """Largest distance of any disk from where it started, m."""
+        return float(np.hypot(self.disk_x - self.disk_x[0], self.disk_y - self.disk_y[0]).max())
+
 
 def trajectory_of(
     dynamics: Dynamics, times: np.ndarray, states: np.ndarray, inputs: np.ndarray, counters: dict[str, int]
