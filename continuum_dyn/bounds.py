@@ -7,9 +7,9 @@ largest energy, a step leaves 2 x / s in the power ledger and N steps N times as
 
     tip_error       N tolerances, times the amplification that the case states
     ledger          2 N tolerances / travel
-    energy_growth   twice the ledger's: what is stored less what is put in may rise by its error alone. Under
-                    inputs that stay what they are 20 tolerances / travel: where damping is at work, only the few
-                    steps about a turning point can add up
+    energy_growth   twice the ledger's: what is stored less what is put in may rise by its error alone. A tenth of
+                    it in a damped scene whose inputs stay what they are: only about the turning points of the
+                    motion damping takes less than a step may add
     settled_gap     10 tolerances: errors fade, with those of a step each; and what the case says still swings
     steps           what the case states
     energy_trend    what the case states
@@ -72,8 +72,8 @@ def bounds_of(run: Run, expected: Expected, tip_error: float | None, whole: bool
         return bounds
     step_error = (scenario.solver.rtol + scenario.solver.atol) * scenario.scene.arm.total_length
     part = 2.0 * step_error / max(motion.travel, 1e-300)
-    ledger = steps * (part + ROUNDING)
-    growth = 10.0 * (part + ROUNDING) if is_left_alone(scenario) else 2.0 * ledger
+    ledger = min(1.0, steps * (part + ROUNDING))
+    growth = 0.1 * ledger if is_left_alone(scenario) else 2.0 * ledger
     bounds += [Bound("ledger", found["ledger"], ledger), Bound("energy_growth", found["energy_growth"], growth)]
     if method not in expected.tip_error:
         bounds.append(Bound("tip_error", tip_error, steps * step_error * expected.amplification))

@@ -98,7 +98,7 @@ class ArmTable(BaseModel):
     area: PositiveEach | None = None
     second_moment: PositiveEach | None = None
     disk_mass: MassEach | None = None
-    disk_inertia: PositiveEach | None = None
+    disk_inertia: MassEach | None = None
     core_density: Positive | None = None
     reference_curvature: NumberEach | None = None
     subsegments: int | Line | None = None

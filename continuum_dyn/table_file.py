@@ -57,20 +57,18 @@ def read_table(scenario: Path, name: str, quantity: str, periods: int = 1) -> Ta
 def _repeated(name: str, rows: list[tuple[float, float]], periods: int) -> list[tuple[float, float]]:
     """The rows of all periods. Where a period ends in another value than it began the table jumps.
 
-    A jump is a pair of rows whose times are neighbours in floating point.
+    A jump is a pair of rows whose times are neighbours in floating point, and stays one.
     """
     if periods == 1:
         return rows
     if len(rows) * periods > MAX_ROWS:
         raise InputError(f"table '{name}': {periods} periods of {len(rows)} rows. Allowed: {MAX_ROWS} rows.")
-    (start, first), (end, last) = rows[0], rows[-1]
+    length = rows[-1][0] - rows[0][0]
     found = list(rows)
     for number in range(1, periods):
-        later = start + number * (end - start)
-        found.pop()
-        if last != first:
-            found.append((nextafter(later, -inf), last))
-        found += [(later + (t - start), value) for t, value in rows]
+        joins = rows[0][1] == rows[-1][1]
+        for t, value in rows[1 if joins else 0 :]:
+            found.append((max(t + number * length, nextafter(found[-1][0], inf)), value))
     return found
 
 

@@ -95,7 +95,7 @@ class Each:
     area: PerDisk | None = None
     second_moment: PerDisk | None = None
     disk_mass: MassPerDisk | None = None
-    disk_inertia: PerDisk | None = None
+    disk_inertia: MassPerDisk | None = None
     reference_curvature: Annotated[tuple[float, ...], Field(strict=False)] | None = None
 
 
@@ -158,7 +158,7 @@ class Arm:
     area: Positive | None = None
     second_moment: Positive | None = None
     disk_mass: NonNegative | None = None
-    disk_inertia: Positive | None = None
+    disk_inertia: NonNegative | None = None
     core_density: Positive | None = None
     reference_curvature: float = 0.0
     subsegments: Subsegments = 1
