@@ -2,15 +2,15 @@
 
 A step may displace no disk by more than a tolerance, (rtol + atol) times the arm's length. Where the motion
 does not make an error larger by itself, N steps leave at most N tolerances. A disk that is off by x under a
-force F has its energy off by F x; a motion whose travel, the largest of any disk, is s has the energy F s / 2. So, in parts of the
-largest energy, a step leaves 2 x / s in the power ledger and N steps N times as much.
+force F has its energy off by F x, and a motion that the force drives through the travel s, the largest of any
+disk, has the energy F s / 2. So a step leaves 2 x / s of the largest energy in the power ledger.
 
     tip_error       N tolerances, times the amplification that the case states
     ledger          2 N tolerances / travel
-    energy_growth   twice the ledger's: what is stored less what is put in may rise by its error alone. A tenth of
-                    it in a damped scene whose inputs stay what they are: only about the turning points of the
-                    motion damping takes less than a step may add
-    settled_gap     10 tolerances: errors fade, with those of a step each; and what the case says still swings
+    energy_growth   twice the ledger's: what is stored less what is put in may rise by its error alone. In a
+                    damped scene whose inputs stay what they are a tenth of the ledger's: only about the
+                    turning points of the motion damping takes less than a step's error may add
+    settled_gap     10 tolerances: errors fade, the last steps' are left; and what the case says still swings
     steps           what the case states
     energy_trend    what the case states
 
@@ -74,7 +74,10 @@ def bounds_of(run: Run, expected: Expected, tip_error: float | None, whole: bool
     part = 2.0 * step_error / max(motion.travel, 1e-300)
     ledger = min(1.0, steps * (part + ROUNDING))
     growth = 0.1 * ledger if is_left_alone(scenario) else 2.0 * ledger
-    bounds += [Bound("ledger", found["ledger"], ledger), Bound("energy_growth", found["energy_growth"], growth)]
+    bounds += [
+        Bound("ledger", found["ledger"], ledger),
+        Bound("energy_growth", found["energy_growth"], growth),
+    ]
     if method not in expected.tip_error:
         bounds.append(Bound("tip_error", tip_error, steps * step_error * expected.amplification))
     if whole and expected.outcome == "settled":

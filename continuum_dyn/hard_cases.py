@@ -105,7 +105,8 @@ def judge(
     told(f"{case.name}: reference")
     reference = _reference(case)
     verdicts = []
-    for method in (*claiming, *(other for other in others if other not in claiming)):
+    order: list[Method] = [*claiming, *(other for other in others if other not in claiming)]
+    for method in order:
         told(f"{case.name}: {method}")
         seconds = case.scenario.solver.max_seconds
         if method not in claiming:
@@ -115,7 +116,7 @@ def judge(
 
 
 def _reference(case: HardCase) -> Trajectory | None:
-    """The motion by the case's last method at tighter tolerances; None if it ended otherwise than it should."""
+    """The motion by the case's last method at tighter tolerances; None if it ended otherwise than it must."""
     rtol = max(TIGHTEST, TIGHTER * case.scenario.solver.rtol)
     tight = replace(case.scenario.solver, method=case.reference, step=None, rtol=rtol, atol=1e-3 * rtol)
     run = simulate(_as_far_as_claimed(case, tight))

@@ -25,13 +25,12 @@ UNUSUAL = {
     "cables_that_go_slack_and_catch",
     "disks_without_mass",
     "friction_that_sticks_and_slips",
-    "mass_at_the_tip_alone",
     "nodes_without_mass",
     "payload_of_a_million_disks",
     "upright_arm_that_falls",
 }
-"""Cases with equations of their own to compile; with or without extension, as they do not stand in their files,
-only ``continuum-dyn hard`` runs them."""
+"""Cases with equations of their own to compile: the tests run them as they stand in their files, and only
+``continuum-dyn hard`` the same with extension, or without it."""
 SLOW = {
     *UNUSUAL,
     "a_step_every_5_ms",
