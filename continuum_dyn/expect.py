@@ -18,9 +18,9 @@ class Expected:
     one, at tighter tolerances, errors are measured. A method named in ``until`` (s) goes only as far as that,
     as a motion that is not asked whether it has settled.
 
-    ``tip_error`` (m) bounds the error of a method that has no tolerances; ``horizon`` (s) is how far errors
-    are looked at, all the way by default; ``amplification`` is how many times larger the motion itself makes
-    them. ``still_swings`` (m) is what is left of the motion at its end. ``energy_trend`` bounds the slope of
+    ``tip_error`` (m) bounds the error of a method otherwise than by its tolerance; ``horizon`` (s) is how far
+    errors are looked at, all the way by default; ``amplification`` is how many times larger the motion itself
+    makes them. ``still_swings`` (m) is what is left of the motion at its end. ``energy_trend`` bounds the slope of
     the total energy times the duration, in parts of the range of the kinetic energy.
     """
 
