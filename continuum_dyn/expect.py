@@ -1,12 +1,13 @@
 """What a scenario expects of its own run: the table [expect], by which a hard case is judged."""
 
+from dataclasses import field
 from typing import Annotated
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from continuum_dyn.study import Method
-from statics.checked import STRICT, Positive
+from statics.checked import STRICT, NonNegative, Positive
 from statics.outcome import Outcome
 
 
@@ -14,24 +15,38 @@ from statics.outcome import Outcome
 class Expected:
     """How a motion must end, by which methods, and what is special about its bounds: see ``bounds.py``.
 
-    ``steps`` names the methods that claim the case, with the most steps that each may take. Against the last
-    one, at tighter tolerances, errors are measured. A method named in ``until`` (s) goes only as far as that,
-    as a motion that is not asked whether it has settled.
-
-    ``tip_error`` (m) bounds the error of a method otherwise than by its tolerance; ``horizon`` (s) is how far
-    errors are looked at, all the way by default; ``amplification`` is how many times larger the motion itself
-    makes them. ``still_swings`` (m) is what is left of the motion at its end. ``energy_trend`` bounds the slope of
-    the total energy times the duration, in parts of the range of the kinetic energy.
+    Errors are measured against the last method of ``steps``, at tighter tolerances.
     """
 
-    outcome: Annotated[Outcome, Field(strict=False)]
-    steps: Annotated[dict[Method, Annotated[int, Field(ge=1)]], Field(min_length=1)]
-    until: dict[Method, Positive] = Field(default_factory=dict)
-    tip_error: dict[Method, Positive] = Field(default_factory=dict)
-    horizon: Positive | None = None
-    amplification: Annotated[float, Field(ge=1)] = 1.0
-    still_swings: Annotated[float, Field(ge=0)] = 0.0
-    energy_trend: Positive | None = None
+    outcome: Annotated[Outcome, Field(strict=False, description="how the motion ends")]
+    steps: Annotated[
+        dict[Method, Annotated[int, Field(ge=1)]],
+        Field(min_length=1, description="methods that claim the case, and the most steps that each may take"),
+    ]
+    until: Annotated[
+        dict[Method, Positive],
+        Field(description="how far a method goes that does not go to the end, s; it need not settle"),
+    ] = field(default_factory=dict)
+    tip_error: Annotated[
+        dict[Method, Positive],
+        Field(description="error of the tip of a method where it does not go by its tolerance, m"),
+    ] = field(default_factory=dict)
+    horizon: Annotated[
+        Positive | None, Field(description="time up to which errors are looked at, s; by default the end")
+    ] = None
+    amplification: Annotated[
+        float, Field(ge=1, description="how many times larger the motion itself makes an error")
+    ] = 1.0
+    still_swings: Annotated[
+        NonNegative, Field(description="what is left of the motion at the tip at its end, m")
+    ] = 0.0
+    energy_trend: Annotated[
+        Positive | None,
+        Field(
+            description="slope of the total energy times the duration, in parts of the range of the kinetic "
+            "energy"
+        ),
+    ] = None
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -41,5 +56,9 @@ class Expect(Expected):
     A scenario is run so where that is given: with extension if it is not among its effects, else without.
     """
 
-    with_extension: Expected | None = None
-    without_extension: Expected | None = None
+    with_extension: Annotated[
+        Expected | None, Field(description="what is expected of the same scenario with extension")
+    ] = None
+    without_extension: Annotated[
+        Expected | None, Field(description="what is expected of the same scenario without extension")
+    ] = None

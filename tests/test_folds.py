@@ -11,7 +11,7 @@ from scipy.optimize import root
 from continuum_dyn import Run, load_scenario, simulate
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.study import RampStudy, Scenario
-from continuum_dyn.views import plots
+from continuum_dyn.views import log_plots
 from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path
 
 SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
@@ -100,7 +100,7 @@ def test_plain_ramp_tells_where_it_jumps(scenario: Scenario, followed: Run) -> N
 
 def test_ramp_up_and_down_jumps_at_the_one_fold_and_at_the_other(scenario: Scenario) -> None:
     up = scenario.ramps[0]
-    both = replace(scenario, tension=((*up, *up[-2::-1]),), study=RampStudy())
+    both = replace(scenario, drives=((*up, *up[-2::-1]),), study=RampStudy())
     jumps = [point for point in simulate(both).equilibria if point.jumped]
     assert [
         (point.tension[0], round(float(point.lost_at.tension[0]), 3)) for point in jumps if point.lost_at
@@ -114,7 +114,7 @@ def test_picture_of_a_path_marks_its_folds(followed: Run, tmp_path: Path) -> Non
     write_log(followed, tmp_path / "path.h5")
     log = read_log(tmp_path / "path.h5")
     assert log.equilibria["critical"].sum() == 2
-    labels = plots.ramp(log).axes[0].get_legend_handles_labels()[1]
+    labels = log_plots.picture(log, ["tip"]).axes[0].get_legend_handles_labels()[1]
     assert labels == ["stable", "unstable", "fold"]
 
 

@@ -1,11 +1,11 @@
 """``continuum-dyn explain``: what a scenario simulates, as equations."""
 
-from pathlib import Path
 from textwrap import fill
 from typing import Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Overrides, ScenarioFile
 from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
@@ -20,11 +20,12 @@ _DISK_LETTERS = {
 
 
 def explain(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario file (TOML).", show_default=False)],
+    file: ScenarioFile,
+    overrides: Overrides = None,
     latex: Annotated[bool, typer.Option("--latex", help="Equations as LaTeX.")] = False,
     measure: Annotated[bool, typer.Option("--measure", help="Measure what can be left out.")] = False,
 ) -> None:
-    """Show the effects in play, what each adds, the modes at rest, and the equations.
+    """Show what each effect adds, the modes at rest, and the equations.
 
     With --measure a motion is run without each effect in turn, to say which of them can be left out at the
     accuracy that is asked for, and what time they cost. The first time each of these is compiled, which
@@ -33,7 +34,7 @@ def explain(
     from continuum_dyn.commands.effects import show_additions, show_modes, show_what_to_leave_out
     from continuum_dyn.scenario import load_scenario
 
-    scenario = load_scenario(file)
+    scenario = load_scenario(file, overrides or ())
     scene = scenario.scene
     typer.echo(f"{scenario.title}\n")
     per_segment = len(scene.coordinates)
@@ -88,7 +89,7 @@ def _print_method(scenario: Any) -> None:
     if not isinstance(scenario.study, MotionStudy) or scenario.solver.method != "auto":
         return
     dynamics = Dynamics(scenario.scene)
-    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_tension).coordinates)
+    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_inputs).coordinates)
     duration, exact = scenario.study.duration, scenario.accuracy is not None
     choice = choose(dynamics, start, spans(scenario.profiles, duration)[0], duration, exact)
     typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))

@@ -1,10 +1,14 @@
 """What the commands share: a length or a time in its best unit, a plain table, progress, a folder."""
 
+import sys
 from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
+from continuum_dyn.commands.verbosity import shows_progress
 from statics.errors import LogError
 from statics.interruption import held
 
@@ -18,6 +22,14 @@ def length(value: float) -> str:
         if value >= 0.999 * size:
             return f"{value / size:.3g} {unit}"
     return f"{value / 1e-12:.3g} pm"
+
+
+def energy(value: float) -> str:
+    """An energy (J) in the unit that reads best."""
+    for unit, size in (("J", 1.0), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)):
+        if abs(value) >= 0.999 * size:
+            return f"{value / size:.3g} {unit}"
+    return f"{value / 1e-12:.3g} pJ"
 
 
 def duration(value: float) -> str:
@@ -34,6 +46,15 @@ def mode_row(mode: "Mode") -> tuple[str, str, str]:
     decay_time = duration(abs(mode.decay_time)) if isfinite(mode.decay_time) else "never"
     grows = "grows e-fold in " if mode.grows else ""
     return f"{mode.frequency:.5g} Hz", f"{mode.damping_ratio:.3g}{kind}", f"{grows}{decay_time}"
+
+
+def wrapped(message: str) -> str:
+    """A message of the program with its lines broken at words, where standard error is a terminal."""
+    if not sys.stderr.isatty():
+        return message
+    lines = TextWrapper(get_terminal_size().columns, subsequent_indent="  ")
+    lines.break_long_words = lines.break_on_hyphens = False  # of paths, options and commands
+    return "\n".join(map(lines.fill, message.splitlines()))
 
 
 def make_folder(folder: Path) -> None:
@@ -65,7 +86,7 @@ def with_status(title: str, work: Callable[[Callable[[str], None]], Any]) -> Any
     from rich.console import Console
 
     console = Console(stderr=True)
-    if not console.is_terminal:
+    if not (console.is_terminal and shows_progress()):
         return work(lambda _: None)
     with console.status(title) as status:
         return work(lambda what: status.update(f"{title}: {what}"))
