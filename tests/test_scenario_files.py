@@ -199,7 +199,7 @@ def test_table_of_several_periods_repeats_its_rows(
 ) -> None:
     (tmp_path / "table.csv").write_text(f"time,tension\n{rows}\n")
     text = GOOD.replace('"step", before = 0.0, after = 1.0', '"table", file = "table.csv", periods = 2')
-    (profile,) = load_scenario(write(tmp_path, text)).tension
+    (profile,) = load_scenario(write(tmp_path, text)).drives
     assert isinstance(profile, Table)
     assert profile.time == times
     assert profile.value == values
@@ -210,7 +210,7 @@ def test_corners_one_ulp_apart_stay_so_in_every_period(tmp_path: Path) -> None:
         f"time,tension\n0,1\n0.3,1\n{float(np.nextafter(0.3, 1.0))!r},2\n0.7,1\n"
     )
     text = GOOD.replace('"step", before = 0.0, after = 1.0', '"table", file = "table.csv", periods = 300')
-    (profile,) = load_scenario(write(tmp_path, text)).tension
+    (profile,) = load_scenario(write(tmp_path, text)).drives
     assert isinstance(profile, Table)
     jumps = [(early, late) for early, late in pairwise(profile.time) if late - early < 0.1]
     assert len(jumps) == 300
