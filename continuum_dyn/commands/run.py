@@ -14,7 +14,7 @@ import typer
 from continuum_dyn.commands.arguments import Folder, Overrides
 from continuum_dyn.commands.show import length, make_folder
 from continuum_dyn.commands.verbosity import shows_progress
-from continuum_dyn.extras import MissingExtraError
+from continuum_dyn.extras import MissingExtraError, extras_named
 from statics.errors import InputError
 from statics.interruption import held
 from statics.stages import stage
@@ -135,7 +135,8 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
 def _recording(log: "Log") -> tuple[Path | None, str]:
     """The recording that is written beside a log; or none, and why."""
     try:
-        from continuum_dyn.views import rerun_view
+        with extras_named():
+            from continuum_dyn.views import rerun_view
     except MissingExtraError as missing:
         return None, str(missing)
     recording = log.path.with_suffix(".rrd")

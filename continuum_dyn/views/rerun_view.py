@@ -13,17 +13,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
 
-from continuum_dyn.extras import extras_named
 from continuum_dyn.record import Log
 from continuum_dyn.views.backbone import backbone, poses
 from statics.errors import LogError
 from statics.interruption import held
 from statics.quantities import QUANTITIES
-
-with extras_named():
-    import rerun as rr
-    import rerun.blueprint as rrb
 
 APPLICATION = "continuum-dyn"
 

@@ -3,13 +3,10 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from continuum_dyn.extras import extras_named
 from continuum_dyn.settling_answers import BANDS, Settling
 from continuum_dyn.views.axis_units import Axis, axis
-
-with extras_named():
-    from matplotlib.figure import Figure
 
 SHADES = ("0.90", "0.80", "0.68")
 """Of the bands, widest first."""
@@ -86,7 +83,7 @@ def _envelope(found: Settling) -> tuple[np.ndarray, np.ndarray]:
 def _draw_distance(axes: Any, found: Settling, clock: Axis, place: Axis) -> None:
     travel = place.per_si * found.travel
     away = np.abs(place.per_si * found.along - travel)
-    axes.semilogy(_since(found, clock), np.maximum(away, DEEPEST * travel), "k-", lw=1.0, label="motion")
+    axes.semilogy(_since(found, clock), np.where(away > 0.0, away, np.nan), "k-", lw=1.0, label="motion")
     for (_, band), line in zip(BANDS.items(), ("--", "-.", ":"), strict=True):
         axes.axhline(band * travel, color="0.4", lw=1.0, ls=line, label=f"{100 * band:g} % of the travel")
     if found.ring_down is not None:
