@@ -70,14 +70,14 @@ def _load(files: list[Path]) -> "list[tuple[Path, Scenario]]":
 def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[str, Any]:
     from continuum_dyn.record import read_log, write_log
     from continuum_dyn.simulation import simulate
-    from continuum_dyn.views import rerun_view
+    from continuum_dyn.views.playback import recording as playback
 
     started = time.perf_counter()
     with _progress(scenario.title, quiet) as progress:
         result = simulate(scenario, progress)
     log, recording = out / f"{path.stem}.h5", out / f"{path.stem}.rrd"
     write_log(result, log)
-    rerun_view.save(read_log(log), recording)
+    playback.save([read_log(log)], recording)
     wall_time = time.perf_counter() - started
     return {"run": result, "log": log, "record": _record(path, result, log, recording, wall_time)}
 
