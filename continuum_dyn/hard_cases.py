@@ -150,17 +150,13 @@ def energies(found: Trajectory) -> dict[str, float]:
     kinetic = found.ledger["kinetic_energy"]
     left = stored - found.ledger["input_work"]
     rise = float(np.max(left - np.minimum.accumulate(left)))
-    largest = max(float(np.ptp(stored)), *(float(np.abs(found.ledger[name]).max()) for name in COMPARED))
+    largest = found.largest_energy
     slope = np.polyfit(found.time - found.time.mean(), stored, 1)[0] if found.time.size > 1 else 0.0
     return {
         "ledger": _part(float(np.abs(found.ledger_gap).max()), largest),
         "energy_growth": _part(rise, largest),
         "energy_trend": _part(abs(float(slope)) * float(np.ptp(found.time)), float(np.ptp(kinetic))),
     }
-
-
-COMPARED = ("kinetic_energy", "input_work", "dissipated_energy")
-"""Energies, beside the range of what is stored, that others are parts of."""
 
 
 def _part(value: float, whole: float) -> float:

@@ -6,7 +6,7 @@ with its place, what was read, and the nearest allowed word.
 
 import json
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from continuum_dyn.expect import Expect
+from continuum_dyn.overrides import overridden
 from continuum_dyn.profiles import Constant, Profile
 from continuum_dyn.scenario_errors import explain
 from continuum_dyn.scenario_file import (
@@ -39,28 +40,32 @@ LARGEST = 1e30
 """Size of the largest number of a scenario; that of the smallest is one over it."""
 
 
-def load_scenario(path: str | Path) -> Scenario:
-    """Read and check a scenario file.
+def load_scenario(path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
+    """Read and check a scenario file, with changes such as "arm.disks=16" made to it.
 
     Raises ``InputError`` whose text names the file, every place in it that is wrong, what is allowed
     there and the nearest match.
     """
-    return load_expecting(path)[0]
+    return load_expecting(path, overrides)[0]
 
 
-def load_expecting(path: str | Path) -> tuple[Scenario, Expect | None]:
+def load_expecting(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Scenario, Expect | None]:
     """The scenario, and what it expects of its run. Raises ``InputError`` like ``load_scenario``."""
     path = Path(path)
-    return parse(read_text(path, MAX_FILE_SIZE), path, lambda name: table_text(path, name))
+    text = read_text(path, MAX_FILE_SIZE)
+    return parse(text, path, lambda name: table_text(path, name), overrides)
 
 
-def parse(text: str, path: Path, text_of_table: Callable[[str], str]) -> tuple[Scenario, Expect | None]:
+def parse(
+    text: str, path: Path, text_of_table: Callable[[str], str], overrides: Sequence[str] = ()
+) -> tuple[Scenario, Expect | None]:
     """The scenario of a file's text, and what it expects; ``path`` is for titles and messages.
 
     ``text_of_table`` gives the text of a table by the name that the scenario calls it. Raises ``InputError``
     like ``load_scenario``.
     """
     try:
+        text = overridden(text, path.name, overrides)
         content = tomllib.loads(text)
         _check_sizes(content, "")
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))

@@ -1,5 +1,6 @@
 """A motion at its samples."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -57,8 +58,15 @@ class Trajectory:
 
     def first(self, count: int) -> "Trajectory":
         """That many samples from the start on."""
-        cut = {name: value[:count] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        return replace(self, **cut, ledger={name: value[:count] for name, value in self.ledger.items()})
+        return self._part(slice(0, count))
+
+    def after(self, count: int) -> "Trajectory":
+        """The samples after that many."""
+        return self._part(slice(count, None))
+
+    def _part(self, rows: slice) -> "Trajectory":
+        cut = {name: value[rows] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        return replace(self, **cut, ledger={name: value[rows] for name, value in self.ledger.items()})
 
     @property
     def stored_energy(self) -> np.ndarray:
@@ -74,6 +82,32 @@ class Trajectory:
         """
         stored = self.stored_energy
         return stored - stored[0] - self.ledger["input_work"] + self.ledger["dissipated_energy"]
+
+    @property
+    def largest_energy(self) -> float:
+        """The largest energy that moved, J: stored, kinetic, put in or dissipated."""
+        compared = ("kinetic_energy", "input_work", "dissipated_energy")
+        moved = (float(np.abs(self.ledger[name]).max()) for name in compared)
+        return max(float(np.ptp(self.stored_energy)), *moved)
+
+    @property
+    def travel(self) -> float:
+        """Largest distance of any disk from where it started, m."""
+        return float(np.hypot(self.disk_x - self.disk_x[0], self.disk_y - self.disk_y[0]).max())
+
+
+def joined(blocks: Sequence[Trajectory], counters: dict[str, int]) -> Trajectory:
+    """One trajectory of several that follow each other."""
+    first = blocks[0]
+    if len(blocks) == 1:
+        return replace(first, counters=counters)
+    columns = {
+        name: np.concatenate([getattr(block, name) for block in blocks])
+        for name, value in vars(first).items()
+        if isinstance(value, np.ndarray)
+    }
+    ledger = {name: np.concatenate([block.ledger[name] for block in blocks]) for name in first.ledger}
+    return replace(first, **columns, ledger=ledger, counters=counters)
 
 
 def trajectory_of(

@@ -48,6 +48,19 @@ def test_step_into_the_hole_limit_says_when_and_where(method: Method) -> None:
     assert_kept(run, 0.05)
 
 
+def test_motion_whose_energies_do_not_add_up_is_no_answer() -> None:
+    """An L-stable method damps what nothing damps; at a loose tolerance it comes to rest, which is wrong."""
+    free = moving(rone2012(), damping=False)
+    release, study = (Step(before=2.0, after=0.0),), MotionStudy(0.1, samples=11)
+    run = simulate(Scenario(free, release, study, Solver("chain", rtol=1e-4)))
+    assert run.outcome is Outcome.DIVERGED
+    assert "energies do not add up" in run.message
+    assert run.trajectory is not None
+    assert run.trajectory.time[-1] == 0.1
+    kept = simulate(Scenario(free, release, study, Solver("chain", rtol=1e-8)))
+    assert kept.outcome is Outcome.COMPLETED
+
+
 def without_extension() -> Scene:
     plain = rone2012()
     return moving(Scene(plain.arm, (effect for effect in plain.effects if effect.name != "extension")))
@@ -112,6 +125,16 @@ def test_budget_of_seconds_ends_the_run() -> None:
     run = simulate(step_to(1.0), budget=Budget(seconds=0.0))
     assert run.outcome is Outcome.BUDGET_EXCEEDED
     assert_kept(run, 0.05)
+
+
+@pytest.mark.parametrize("method", ["RK45", "Radau", "BDF", "LSODA"])
+def test_budget_of_seconds_ends_a_step_that_goes_on(method: Method) -> None:
+    """One step of a large arm by a method with dense matrices takes minutes."""
+    run = simulate(step_to(1.0, method=method), budget=Budget(seconds=0.0))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "used up by t = 0 s" in run.message
+    assert run.trajectory is not None
+    assert run.trajectory.counters["steps"] == 0
 
 
 @pytest.mark.parametrize("method", ["LSODA", "Radau", "BDF"])

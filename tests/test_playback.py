@@ -170,7 +170,7 @@ def test_long_arms_and_long_motions_are_thinned_out(
         motion, trajectory={"time": np.linspace(0.0, 50.0, samples), **many}, arm=arm, equilibria={}
     )
     entities = shown(long, tmp_path)
-    assert np.shape(entities["/arm/rim"]["LineStrips2D:strips"]) == (100, 1, 601, 2)
+    assert np.shape(entities["/arm/rim"]["LineStrips2D:strips"]) == (100, 1, 201, 2)
     assert np.shape(entities["/arm/disks"]["LineStrips2D:strips"]) == (100, 100, 2, 2)
     names = entities["/series/curvature"]["SeriesLines:names"][0]
     assert (len(names), names[0], names[-1]) == (8, "segment 1", "segment 200")

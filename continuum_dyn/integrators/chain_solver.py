@@ -59,6 +59,7 @@ class ChainSolver(OdeSolver):
         self.spans, self.span = spans, 0
         self.tableau = tableau
         self.tolerance = tolerance
+        self.lasting = 1.0 / dynamics.frequency if tableau.explicit else 0.0
         self.corner_step = CORNER_STEP / dynamics.frequency
         shape = (BATCH + 1, dynamics.scene.arm.segments, dynamics.dofs)
         self.records = (
@@ -123,7 +124,7 @@ class ChainSolver(OdeSolver):
             self.next_step,
             self.rate,
             tuple(column[rows] for column in self.records),
-            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor),
+            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, self.lasting),
             tableau.order,
             self.tolerance,
             self._arm,

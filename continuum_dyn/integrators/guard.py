@@ -25,6 +25,10 @@ class Budget:
     seconds: float = Solver.max_seconds
 
 
+class StepAbandonedError(Exception):
+    """The budget of time, or Ctrl-C, ends a run within a step; the monitor has noted which."""
+
+
 @dataclass
 class Monitor:
     """Watches a run over all of its spans; ``outcome`` is set when a bound is broken.
@@ -57,15 +61,27 @@ class Monitor:
         if found is not None:
             return self.stop(*found)
         self.reached = (t, y)
-        if self.interruption.asked:
-            return self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
         if self.steps >= self.budget.steps:
             return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.steps} steps taken by t = {t:.6g} s")
-        if time.monotonic() - self.started > self.budget.seconds:
-            return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.budget.seconds:g} s used up by t = {t:.6g} s")
+        if self._out_of_time(t):
+            return self.message
         if self.progress is not None:
             self.progress(t)
         return None
+
+    def within_step(self) -> None:
+        """Raises ``StepAbandonedError`` where a step must not go on: one of a large arm takes minutes."""
+        if self._out_of_time(self.reached[0]):
+            raise StepAbandonedError(self.message)
+
+    def _out_of_time(self, t: float) -> bool:
+        if self.interruption.asked:
+            self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
+        elif time.monotonic() - self.started > self.budget.seconds:
+            self.stop(Outcome.BUDGET_EXCEEDED, f"{self.budget.seconds:g} s used up by t = {t:.6g} s")
+        else:
+            return False
+        return True
 
 
 class Guard(OdeSolver):
@@ -79,16 +95,26 @@ class Guard(OdeSolver):
     internal_rejections = 0
     steps_left = 1
 
-    def __init__(self, *arguments: Any, monitor: Monitor, **options: Any) -> None:
-        self.monitor = monitor
-        super().__init__(*arguments, **options)
+    def __init__(self, fun: Callable[..., Any], *arguments: Any, monitor: Monitor, **options: Any) -> None:
+        self.monitor, self.stepping = monitor, False
+
+        def watched(t: float, y: np.ndarray) -> Any:
+            if self.stepping:
+                monitor.within_step()
+            return fun(t, y)
+
+        super().__init__(watched, *arguments, **options)
 
     def step(self) -> str | None:
         """One step of the solver; failed if the solver fails or the monitor objects."""
         self.steps_left = self.monitor.budget.steps - self.monitor.steps
+        self.stepping = True
         try:
             with np.errstate(all="ignore"):
                 message = super().step()
+        except StepAbandonedError:
+            self.status = "failed"
+            return self.monitor.message
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
             self.status = "failed"
             return self.monitor.stop(Outcome.DIVERGED, f"{error} after t = {self.t:.6g} s")

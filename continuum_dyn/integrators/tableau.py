@@ -29,6 +29,11 @@ class Tableau:
         """Times of the stages in units of the step."""
         return self.a.sum(axis=1)
 
+    @property
+    def explicit(self) -> bool:
+        """Whether no stage depends on itself."""
+        return not self.a.diagonal().any()
+
     @cached_property
     def predictor(self) -> np.ndarray:
         """Weights that extrapolate a stage's acceleration from those before it, shape (stages, stages).

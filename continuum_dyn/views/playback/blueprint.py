@@ -13,8 +13,8 @@ from continuum_dyn.views.playback.legend import extent
 from continuum_dyn.views.playback.plots import Plot, value_range
 from continuum_dyn.views.playback.story import SHORTEST_PLAYBACK, Story
 
-ROOM_FOR_LEGENDS = 0.3
-"""Of the time line, after it."""
+ROOM_FOR_LEGENDS = 0.3, 0.5
+"""Of the time line, after it: for one run, and for several, whose names stand in it."""
 
 
 def blueprint(
@@ -59,14 +59,14 @@ def _below(stories: Sequence[Story], plots: Mapping[str, Sequence[Plot]]) -> lis
     views: list[rrb.View] = [
         rrb.Spatial2DView(
             origin=story.at("curvature"),
-            name=" ".join(filter(None, ("curvature over time", story.name))),
+            name=": ".join(filter(None, (story.name, "curvature over time"))),
             background=WHITE,
             visual_bounds=bounds,
         )
         for story in stories
     ]
     views += [
-        rrb.TextDocumentView(origin=story.at("about"), name=" ".join(filter(None, ("about", story.name))))
+        rrb.TextDocumentView(origin=story.at("about"), name=": ".join(filter(None, (story.name, "about"))))
         for story in stories
     ]
     return [*views, _plot(stories, "curvature", plots["curvature"])]
@@ -96,6 +96,6 @@ def _time_range(stories: Sequence[Story]) -> rrb.TimeRange:
     )  # a number in a sequence is an integer for rerun, as a count of ns is
     times = np.array([story.times[row] for story in stories for row in (0, -1)])
     first, last = round(unit * float(times.min())), round(unit * float(times.max()))
-    end = last + round(ROOM_FOR_LEGENDS * (last - first))
+    end = last + round(ROOM_FOR_LEGENDS[len(stories) > 1] * (last - first))
     start, end = (rrb.TimeRangeBoundary.absolute(nanos=n) for n in (first, end))
     return rrb.TimeRange(start=start, end=end)
