@@ -90,11 +90,14 @@ def _since_start(story: Story) -> list[Series]:
 
 
 def _steps(columns: Mapping[str, np.ndarray]) -> list[Series]:
-    return [Series("step", np.log10(columns["step_size"]))] if "step_size" in columns else []
+    if not columns.get("step_size", np.zeros(1)).any():
+        return []
+    taken = np.where(columns["step_size"] > 0.0, columns["step_size"], np.nan)
+    return [Series("step", np.log10(taken))]
 
 
 def _tip(story: Story, name: str) -> list[Series]:
-    """The tip, where it would rest under the inputs of the moment, and, of one run alone, the band of the settled."""
+    """The tip, where it would rest under the moment's inputs and, of a run alone, the settled's band."""
     series = [Series("tip", story.columns[name][:, -1])]
     resting = resting_rows(story.log) if story.moves else np.array([-1])
     if not (resting >= 0).any():
