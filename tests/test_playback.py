@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import SCENARIOS
+from playback_entities import entities_of
 from rerun.chunk import RrdReader
 
 from continuum_dyn import load_scenario, simulate
@@ -46,14 +47,7 @@ def shown(log: Log, folder: Path) -> dict[str, dict[str, list[Any]]]:
     """Entities of the recording of a log, by path: their columns by name, those that never change too."""
     path = folder / "shown.rrd"
     save([log], path)
-    entities: dict[str, dict[str, list[Any]]] = {}
-    for chunk in RrdReader(path).stream():
-        if chunk.entity_path == "/curvature/picture":
-            continue  # a list of all its bytes would take seconds
-        columns = entities.setdefault(str(chunk.entity_path), {})
-        for name, values in chunk.to_record_batch().to_pydict().items():
-            columns.setdefault(name, []).extend(values)
-    return entities
+    return entities_of(path)
 
 
 def points(entity: Mapping[str, list[Any]]) -> np.ndarray:

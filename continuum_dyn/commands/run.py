@@ -56,6 +56,7 @@ def run(
     overrides: Overrides = None,
     out: Folder = Path("logs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
+    live: Annotated[bool, typer.Option("--live", help="Show each in rerun while it runs.")] = False,
 ) -> None:
     """Simulate scenarios and log them.
 
@@ -68,6 +69,10 @@ def run(
     make_folder(out)
     statuses = []
     for job in jobs:
+        if live:
+            from continuum_dyn.views.playback.live import start
+
+            start(job.log)
         statuses.append(answer(job, as_json))
         if statuses[-1] > 1:
             break
