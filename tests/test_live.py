@@ -45,16 +45,16 @@ def test_each_sample_is_sent_once_while_the_log_grows(tmp_path: Path) -> None:
 def test_a_complete_log_is_sent_whole(tmp_path: Path) -> None:
     entities = shown(tmp_path, grown(10), grown(SAMPLES, complete=True))
     time = np.array(entities["/series/tension"]["sim_time"], dtype="timedelta64[ns]").astype(float) * 1e-9
-    found = dict(zip(time.round(6), np.ravel(entities["/series/tension"]["Scalars:scalars"]), strict=True))
+    found = dict(zip(time.round(5), np.ravel(entities["/series/tension"]["Scalars:scalars"]), strict=True))
     whole = grown(SAMPLES).trajectory
-    assert found == dict(zip(whole["time"].round(6), whole["tension"][:, 0], strict=True))
+    assert found == dict(zip(whole["time"].round(5), whole["tension"][:, 0], strict=True))
 
 
 def test_log_is_followed_until_it_is_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     found = iter([None, grown(5), grown(20), grown(SAMPLES, complete=True), grown(0)])
     seen: list[Log] = []
     monkeypatch.setattr(live, "_latest", lambda _path, _since: next(found))
-    monkeypatch.setattr(time, "sleep", lambda _seconds: None)
+    monkeypatch.setattr(live, "_pause", lambda *_: None)
     monkeypatch.setattr(Follower, "show", lambda self, log: (seen.append(log), _note(self, log)))
     follow(Path("log.h5"), 0.0, Follower(rr.RecordingStream("test")), lambda: True)
     assert [log.trajectory["time"].size for log in seen] == [5, 20, SAMPLES]

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +30,7 @@ INTERVAL = 0.5
 """Shortest time between two looks at the log, s."""
 FLUSH_TIME = 20.0
 """What is sent may take so long to arrive, s."""
-SHARE = 0.02
+SHARE = 0.03
 """Part of the time that reading and sending may take."""
 
 
@@ -81,17 +82,30 @@ def follow(path: Path, since: float, follower: Follower, goes_on: Callable[[], b
             follower.show(log)
         if last:
             return
-        time.sleep(max(INTERVAL, (time.perf_counter() - started) / SHARE))
+        _pause((time.perf_counter() - started) / SHARE, lambda: goes_on() and not _is_new(path, since))
+
+
+def _pause(seconds: float, may_last: Callable[[], bool]) -> None:
+    """Wait so long, but no longer than it may last."""
+    until = time.monotonic() + seconds
+    time.sleep(INTERVAL)
+    while time.monotonic() < until and may_last():
+        time.sleep(INTERVAL)
+
+
+def _is_new(path: Path, since: float) -> bool:
+    try:
+        return path.stat().st_mtime >= since
+    except OSError:
+        return False
 
 
 def _latest(path: Path, since: float) -> Log | None:
     """The log that is written since then, finished or not; None if there is none that can be read yet."""
     for candidate in (path, path.with_name(path.name + UNFINISHED)):
-        try:
-            if candidate.stat().st_mtime >= since:
+        with suppress(LogError):  # just being made or moved: the next look finds it
+            if _is_new(candidate, since):
                 return read_log(candidate)
-        except (OSError, LogError):
-            continue  # not there, or just being made or moved: the next look finds it
     return None
 
 
