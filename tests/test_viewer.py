@@ -74,7 +74,7 @@ def test_the_viewer_of_this_environment_answers() -> None:
 @pytest.mark.slow
 @needs_vulkan
 @pytest.mark.parametrize(
-    "names", [*((name,) for name in SCENES), ("step_response", "step_response_in_water")]
+    "names", [*((name,) for name in SCENES), ("step_response", "step_response_in_water")], ids="_and_".join
 )
 def test_rerun_draws_every_view_without_trouble(names: tuple[str, ...], tmp_path: Path) -> None:
     recording = tmp_path / "playback.rrd"
