@@ -23,7 +23,7 @@ from statics.errors import LogError
 
 SCENES = ("length_driven", "shaken_base", "shaken_tip", "tension_ramp")
 """With slack cables, a base that moves, loads, and equilibria alone."""
-MOMENTS = (0.0, 0.1, 0.6, 1.0)
+MOMENTS = (0.1, 0.6, 1.0)
 """Parts of the time line that are looked at."""
 
 
