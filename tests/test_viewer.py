@@ -6,6 +6,7 @@ import sys
 import time
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -85,7 +86,9 @@ def test_rerun_draws_every_view_without_trouble(names: tuple[str, ...], tmp_path
         assert line.end is not None
         for part in MOMENTS:
             moment = round(line.start + part * (line.end - line.start))
-            place = {"sequence": moment} if line.name == "point" else {"duration": moment / 1e9}
+            place: dict[str, Any] = (
+                {"sequence": moment} if line.name == "point" else {"duration": moment / 1e9}
+            )
             client.set_time(line.name, **place)
             until(lambda: is_drawn(client.take_screenshot()), "picture")
             views = client.get_state().views

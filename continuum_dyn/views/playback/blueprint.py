@@ -16,6 +16,9 @@ from continuum_dyn.views.playback.story import SHORTEST_PLAYBACK, Story
 ROOM_FOR_LEGENDS = 0.3, 0.5
 """Of the time line, after it: for one run, and for several, whose names stand in it."""
 
+MARGIN, ROOM_TO_GROW = 0.08, 0.4
+"""Around the arm, in its larger side: where all that it will do is known, and where not."""
+
 
 def blueprint(
     stories: Sequence[Story],
@@ -25,10 +28,10 @@ def blueprint(
 ) -> rrb.Blueprint:
     """The arm above its curvature and what is said of it, plots beside them.
 
-    Bounds and ranges are those of all that is shown, or, of what is ``growing``, the viewer's to choose; it
-    then shows the latest moment.
+    Bounds and ranges are those of all that is shown. Of what is ``growing`` the latest moment is shown, the
+    arm with room around it, and ranges are the viewer's to choose.
     """
-    arm = _arm(stories, None if growing else drawn)
+    arm = _arm(stories, drawn, ROOM_TO_GROW if growing else MARGIN)
     curvature = _plot(stories, "curvature", plots["curvature"], growing)
     left = rrb.Vertical(arm, rrb.Tabs(*_heat_maps(stories), *_words(stories), curvature), row_shares=[3, 2])
     others = {name: each for name, each in plots.items() if name != "curvature"}
@@ -58,12 +61,10 @@ def words_alone(entity: str) -> rrb.Blueprint:
     return rrb.Blueprint(rrb.TextDocumentView(origin=entity), collapse_panels=True)
 
 
-def _arm(stories: Sequence[Story], drawn: Mapping[str, Drawn] | None) -> rrb.View:
+def _arm(stories: Sequence[Story], drawn: Mapping[str, Drawn], room: float) -> rrb.View:
     name = ending(stories[0].log) if len(stories) == 1 else " and ".join(story.name for story in stories)
-    if drawn is None:
-        return rrb.Spatial2DView(origin="arm", name=stories[0].log.title, background=WHITE)
     low, high = extent(drawn)
-    margin = 0.08 * float((high - low).max())
+    margin = room * float((high - low).max())
     (left, bottom), (right, top) = on_screen(low - margin), on_screen(high + margin)
     bounds = rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom))
     return rrb.Spatial2DView(origin="arm", name=name, background=WHITE, visual_bounds=bounds)

@@ -59,10 +59,10 @@ class Follower:
         drawn: dict[str, Drawn] = {}
         if frames.size:
             drawn = send_rows(self.recording, story, measures, frames, new)
+        drawn |= send_beside(self.recording, [story], measures, drawn)
         if self.rows == 0:
             plots = {name: [plot] for name, plot in plots_of(story).items()}
             self.recording.send_blueprint(blueprint([story], drawn, plots, growing=True))
-        send_beside(self.recording, [story], measures, drawn)
         self.rows = len(story.times)
 
 

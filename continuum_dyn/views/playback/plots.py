@@ -128,7 +128,12 @@ def send_style(recording: rr.RecordingStream, entity: str, story: Story, plot: P
         "names": [prefix + series.name for series in plot.series],
         "colors": np.where(bounds, np.uint32(GREY), colors),
     }
-    recording.log(entity, rr.SeriesLines(**style, widths=np.where(bounds, THIN, LINE_WIDTH)), static=True)
+    lines = rr.SeriesLines(
+        **style,
+        widths=np.where(bounds, THIN, LINE_WIDTH),
+        aggregation_policy="MinMax",  # the mean of fast oscillations would look like rest
+    )
+    recording.log(entity, lines, static=True)
     if not story.moves:
         recording.log(entity, rr.SeriesPoints(**style, marker_sizes=[3.0] * count), static=True)
 
