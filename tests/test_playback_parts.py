@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from logs_by_hand import LENGTH, equilibria, motion_log
+from playback_entities import entities_of
 
 from continuum_dyn.record import Log
 from continuum_dyn.views.playback import heat_map
@@ -180,6 +181,31 @@ def test_runs_are_named_by_as_much_of_their_path_as_it_takes() -> None:
     assert names_of(at[:2]) == ["a", "b"]
     assert names_of(at) == ["logs a", "logs b", "other a"]
     assert names_of([at[0], at[0]]) == ["1 a", "2 a"]
+
+
+def test_runs_share_a_view_and_a_time_in_colours_and_names_of_their_own(tmp_path: Path) -> None:
+    short, long = motion_log(5, path="short.h5"), motion_log(9, path="long.h5", duration=2.0)
+    (tmp_path / "both.rrd").write_bytes(recorded([short, long]))
+    entities = entities_of(tmp_path / "both.rrd")
+    for log, name in ((short, "short"), (long, "long")):
+        plot = entities[f"/series/tension/{name}"]
+        times = np.array(plot["sim_time"], dtype="timedelta64[ns]").astype(float) * 1e-9
+        np.testing.assert_allclose(times, log.trajectory["time"], atol=1e-6)
+        assert plot["SeriesLines:names"] == [[f"{name}: upper"]]
+    for entity, column in (
+        ("/arm/{}/rim", "LineStrips2D:colors"),
+        ("/series/tip_y/{}", "SeriesLines:colors"),
+    ):
+        first, second = (entities[entity.format(name)][column][0][0] for name in ("short", "long"))
+        assert first != second
+
+
+def test_results_and_scenario_are_told_in_words() -> None:
+    log = replace(motion_log(), attributes={"static_gap": 2e-8, "solve_time": 0.003})
+    words = about(told(log))
+    assert "| tip at the end | x 40.0000 mm, y 0.0000 mm, theta 0.00000 rad |" in words
+    assert "| gap to the static equilibrium | 2e-08 m |" in words
+    assert log.scenario.strip() in words
 
 
 def test_motion_and_equilibria_have_no_time_in_common() -> None:

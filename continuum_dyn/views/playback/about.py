@@ -38,7 +38,7 @@ def _results(story: Story) -> str:
     for name, (words, unit) in ATTRIBUTES.items():
         if name in story.log.attributes:
             value = story.log.attributes[name]
-            rows[words] = f"{value:.3g} {unit}" if isinstance(value, float) else str(value)
+            rows[words] = f"{value:.3g} {unit}".strip() if isinstance(value, float) else str(value)
     if "input_work" in columns:
         rows["power ledger"] = f"closes to {_ledger_gap(story):.2g} J"
     table = "\n".join(f"| {name} | {value} |" for name, value in rows.items())
