@@ -10,7 +10,20 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from continuum_dyn.commands import cost, explain, hard, init, modes, play, reproduce, resume, run, schema
+from continuum_dyn.commands import (
+    cost,
+    explain,
+    hard,
+    info,
+    init,
+    modes,
+    play,
+    reproduce,
+    resume,
+    run,
+    schema,
+    validate,
+)
 from continuum_dyn.commands.shared_options import (
     Quiet,
     Verbose,
@@ -26,6 +39,8 @@ COMMANDS = (
     ("Simulate and look", run.run),
     ("Simulate and look", resume.resume),
     ("Simulate and look", play.play),
+    ("Logs", info.info),
+    ("Logs", validate.validate),
     ("Understand", explain.explain),
     ("Understand", modes.modes),
     ("Understand", cost.cost),
