@@ -84,7 +84,7 @@ def replaced(name: str, values: object) -> Callable[[h5py.File], None]:
         (lambda file: file.__delitem__("arm"), "group arm is missing"),
         (replaced("arm", h5py.ExternalLink("other.h5", "/")), "/arm: a link that leads elsewhere"),
         (
-            link("trajectory/disk_x", h5py.SoftLink("/arm/disk")),
+            replaced("trajectory/disk_x", h5py.SoftLink("/arm/disk")),
             "/disk_x: a link that leads elsewhere",
         ),
     ],
