@@ -143,10 +143,10 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
     """
     check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
-    rest = StaticSolver(scenario.scene).solve(scenario.initial_tension)
+    rest = StaticSolver(scenario.scene).solve(scenario.initial_inputs)
     if rest.outcome is not Outcome.COMPLETED:
         raise InputError(f"modes are those about a stable equilibrium; found: {rest.outcome}.")
-    found = modes(dynamics, dynamics.state(rest.coordinates), still(scenario.initial_tension))
+    found = modes(dynamics, dynamics.state(rest.coordinates), still(scenario.initial_inputs))
     return RestModes(scenario, rest, found)
 
 
@@ -159,11 +159,11 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
     try:
         without = scenario.without(effect)
         with np.errstate(all="ignore"):
-            rest = StaticSolver(without.scene, codegen.load_interpreted).solve(without.initial_tension)
+            rest = StaticSolver(without.scene, codegen.load_interpreted).solve(without.initial_inputs)
             if rest.outcome is not Outcome.COMPLETED:
                 return None
             dynamics = Dynamics(without.scene, codegen.load_interpreted)
-            return rates(dynamics, dynamics.state(rest.coordinates), still(without.initial_tension))
+            return rates(dynamics, dynamics.state(rest.coordinates), still(without.initial_inputs))
     except (InputError, ArithmeticError, ValueError):  # Python raises where compiled code goes on with nan
         return None
 
@@ -238,7 +238,7 @@ def check(scene: Scene) -> None:
         raise InputError("modes need the effect 'inertia'. Add inertia = {} to [effects].")
     if scene.arm.massless_nodes:
         raise InputError(
-            "modes need mass on every node, and those between disks carry none. Give the arm's core_density."
+            "modes need mass on every node, and some carry none. Give the arm's core_density, or disk_mass."
         )
     size = scene.arm.segments * len(scene.coordinates)
     if size > MOST_COORDINATES:

@@ -7,7 +7,7 @@ from continuum_dyn import load_scenario, simulate
 from continuum_dyn.cost import measure
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.reproduce import reproduce
-from continuum_dyn.views import plots
+from continuum_dyn.views import log_plots, plots
 
 HERE = Path(__file__).parent
 
@@ -21,8 +21,8 @@ def main() -> None:
         path = Path(folder) / "snap_through.h5"
         write_log(simulate(load_scenario(HERE.parent / "scenarios" / "snap_through.toml")), path)
         figures = {
-            "step_response.png": plots.step_response(read_log(log)),
-            "snap_through.png": plots.ramp(read_log(path)),
+            "step_response.png": log_plots.picture(read_log(log)),
+            "snap_through.png": log_plots.picture(read_log(path), ["tip"]),
             "cost.png": plots.cost(measure(scenario)),
             "rone2012.png": plots.rone2012(reproduce("rone2012")),
         }

@@ -11,8 +11,8 @@ from scipy.optimize import root
 from continuum_dyn import Run, load_scenario, simulate
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.study import RampStudy, Scenario
-from continuum_dyn.views import plots
-from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path
+from continuum_dyn.views import log_plots
+from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path, tension_ramp
 
 SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
 
@@ -100,7 +100,7 @@ def test_plain_ramp_tells_where_it_jumps(scenario: Scenario, followed: Run) -> N
 
 def test_ramp_up_and_down_jumps_at_the_one_fold_and_at_the_other(scenario: Scenario) -> None:
     up = scenario.ramps[0]
-    both = replace(scenario, tension=((*up, *up[-2::-1]),), study=RampStudy())
+    both = replace(scenario, drives=((*up, *up[-2::-1]),), study=RampStudy())
     jumps = [point for point in simulate(both).equilibria if point.jumped]
     assert [
         (point.tension[0], round(float(point.lost_at.tension[0]), 3)) for point in jumps if point.lost_at
@@ -110,11 +110,25 @@ def test_ramp_up_and_down_jumps_at_the_one_fold_and_at_the_other(scenario: Scena
     ]
 
 
+@pytest.mark.parametrize("points", [2, 51])
+def test_folds_close_together_are_passed_however_fine_the_ramp(scenario: Scenario, points: int) -> None:
+    """Hardly too heavy to stand: it snaps over by 0.3 rad, and back where the tension is 11 mN less."""
+    scene = scenario.scene
+    light = Scene(replace(scene.arm, disk_mass=0.775 * 0.07146), scene.effects)
+    tensions = np.linspace(2.6, 2.7, points).tolist()
+    path = follow_path(light, tensions)
+    assert [(at.critical, round(float(at.tension[0]), 3)) for at in path.critical] == [
+        (Critical.FOLD, 2.645),
+        (Critical.FOLD, 2.634),
+    ]
+    assert sum(point.jumped for point in tension_ramp(light, tensions)) == 1
+
+
 def test_picture_of_a_path_marks_its_folds(followed: Run, tmp_path: Path) -> None:
     write_log(followed, tmp_path / "path.h5")
     log = read_log(tmp_path / "path.h5")
     assert log.equilibria["critical"].sum() == 2
-    labels = plots.ramp(log).axes[0].get_legend_handles_labels()[1]
+    labels = log_plots.picture(log, ["tip"]).axes[0].get_legend_handles_labels()[1]
     assert labels == ["stable", "unstable", "fold"]
 
 

@@ -10,8 +10,10 @@ from scipy.optimize import brentq
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.profiles import Step
 from continuum_dyn.study import Solver
-from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Scene, codegen
+from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Outcome, Scene, codegen
+from statics.arc_length import follow
 from statics.equilibria import Equilibrium, StaticSolver
+from statics.ramp import ramp
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 STIFFNESS = 2e4
@@ -52,6 +54,18 @@ def test_slack_cable_is_none() -> None:
     np.testing.assert_allclose(found.coordinates, without.coordinates, rtol=1e-12, atol=1e-18)
 
 
+@pytest.mark.parametrize("gravity", [(0.0, 2e-4), (0.25, 0.0)])
+def test_cable_that_catches_in_the_last_step_of_the_search_is_in_balance(
+    gravity: tuple[float, float],
+) -> None:
+    """One step leads to rest from straight, where the cables are on the verge of slack."""
+    cables = tuple(Cable(f"{r}", r, cable_stiffness=500.0) for r in (0.007, -0.005))
+    scene = Scene(driven(*cables, disks=1).arm, (Bending(), Extension(), Gravity(gravity), Cables()))
+    found = at_rest(scene, 0.0, 0.0)
+    assert 0.0 < found.tension.max() < 1e-6  # N
+    assert found.residual < 1e-14  # N, N m
+
+
 @pytest.mark.parametrize("displacement", [5e-4, 2e-3, 4e-3])
 def test_arm_rests_as_under_the_tension_that_the_length_makes(displacement: float) -> None:
     found = at_rest(driven(BY_LENGTH), displacement)
@@ -59,6 +73,18 @@ def test_arm_rests_as_under_the_tension_that_the_length_makes(displacement: floa
     np.testing.assert_allclose(found.coordinates, under.coordinates, rtol=1e-9, atol=1e-13)
     drawn_in = under.cable_displacement[0] + found.tension[0] / STIFFNESS
     assert drawn_in == pytest.approx(displacement, abs=1e-12)
+
+
+def test_ramp_that_a_cable_catches_in_does_not_jump_and_its_path_is_followed() -> None:
+    """The path has a corner there, at -0.087 mm: so much does the hanging arm draw out of a slack cable."""
+    solver = StaticSolver(driven(BY_LENGTH), codegen.load_interpreted)
+    displacements = np.array([[-2e-3], [4e-3]])
+    inputs = np.hstack([displacements, np.zeros((2, len(solver.scene.inputs) - 1))])
+    path, points = follow(solver, inputs), ramp(solver, inputs)
+    assert path.outcome is Outcome.COMPLETED
+    assert not path.critical
+    assert not points[1].jumped
+    np.testing.assert_allclose(path.end.coordinates, points[1].coordinates, atol=1e-12)
 
 
 def test_cables_of_given_length_hold_an_arm_up_that_would_buckle() -> None:
@@ -94,7 +120,7 @@ def test_motion_with_a_cable_that_goes_slack_and_catches_keeps_its_ledger() -> N
 def test_jump_of_the_length_puts_its_work_into_the_ledger() -> None:
     scenario = load_scenario(SCENARIOS / "length_driven.toml")
     steps = (Step(0.0, 5e-4, at=0.01), Step(0.0, -1e-3, at=0.01))
-    motion = simulate(replace(scenario, tension=steps)).trajectory
+    motion = simulate(replace(scenario, drives=steps)).trajectory
     assert motion is not None
     work = motion.ledger["input_work"]
     assert np.diff(work).max() > 0.5 * STIFFNESS * 4e-4**2
