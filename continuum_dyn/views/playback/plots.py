@@ -78,15 +78,12 @@ def _since_start(story: Story) -> list[Series]:
 
     Beside other runs, what is stored is shown as a whole.
     """
-    columns = story.columns
-    if story.name:
-        stored = np.sum([columns[name] for name in STORED if name in columns], axis=0)
-        columns = {"stored_energy": stored, **{name: columns[name] for name in LEDGER if name in columns}}
-    return [
-        Series(_words(name), columns[name] - columns[name][0])
-        for name in ("stored_energy", *STORED, *LEDGER)
-        if name in columns
-    ]
+    columns = {name: story.columns[name] for name in (*STORED, *LEDGER) if name in story.columns}
+    stored = [columns[name] for name in STORED if name in columns]
+    if story.name and stored:
+        ledger = {name: columns[name] for name in LEDGER if name in columns}
+        columns = {"stored_energy": np.sum(stored, axis=0), **ledger}
+    return [Series(_words(name), values - values[0]) for name, values in columns.items()]
 
 
 def _steps(columns: Mapping[str, np.ndarray]) -> list[Series]:
