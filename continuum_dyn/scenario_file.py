@@ -29,7 +29,8 @@ class TableFile(BaseModel):
     ]
 
 
-UNKNOWN_PROFILE = "unknown profile"
+UNKNOWN_PROFILE = "profile"
+"""The tag of a profile of no known name; messages have it in the place that they name."""
 
 
 def _drive_kind(value: Any) -> str:
