@@ -349,18 +349,26 @@ def _end(
 ) -> tuple[Equilibrium, str]:
     """Where the motion may end: the equilibrium found from its start, or another one that it came to instead.
 
-    The latter is told in words. Cables that rub leave it to the motion's history where it rests.
+    The latter is told in words. Cables that rub leave it anywhere between two branches.
     """
     end = statics.solve(inputs, start.coordinates, start)
-    if len(statics.branches(inputs, end)) > 1 or (end.found and tip_gap(moved.tip, [end.tip]) < within):
+    if _rests_at(end, statics, inputs, moved, within):
         return end, ""
     last = moved.bend_angle[-1], None if moved.elongation is None else moved.elongation[-1]
     near = statics.solve(inputs, np.column_stack([column for column in last if column is not None]))
-    if not (near.found and tip_gap(moved.tip, [near.tip]) < within):
+    if not _rests_at(near, statics, inputs, moved, within):
         return end, ""
     x, y, _ = near.tip
     told = f"at another equilibrium than the one found from the start: tip at x {x:.4g} m, y {y:.4g} m"
     return near, told if end.found and tip_gap(near.tip, [end.tip]) > within else ""
+
+
+def _rests_at(
+    end: Equilibrium, statics: StaticSolver, inputs: np.ndarray, moved: Trajectory, within: float
+) -> bool:
+    """Whether the tip has come to that equilibrium, or between the branches that belong to it."""
+    rests = [branch.tip for branch in statics.branches(inputs, end) if branch.found] if end.found else []
+    return bool(rests) and tip_gap(moved.tip, rests) < within
 
 
 def _static_path(

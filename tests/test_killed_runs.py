@@ -30,7 +30,7 @@ MOMENTS = 100
 @pytest.fixture(scope="module")
 def run() -> Run:
     given = load_scenario(SCENARIOS / "step_response.toml")
-    return simulate(replace(given, tension=(Sine(1.0, 0.9, 20.0),), study=MotionStudy(1.0, samples=6001)))
+    return simulate(replace(given, drives=(Sine(1.0, 0.9, 20.0),), study=MotionStudy(1.0, samples=6001)))
 
 
 def write(run: Run, path: Path, rng: Random, told: int) -> None:

@@ -28,7 +28,7 @@ def _told_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 def scenario() -> Scenario:
     """The arm of the step response, driven up and down all the time."""
     given = load_scenario(SCENARIOS / "step_response.toml")
-    return replace(given, tension=(Sine(1.0, 0.9, 20.0),), study=MotionStudy(1.0, samples=1501))
+    return replace(given, drives=(Sine(1.0, 0.9, 20.0),), study=MotionStudy(1.0, samples=1501))
 
 
 class Watched(StreamedLog):

@@ -66,7 +66,7 @@ class ChainSolver(OdeSolver):
             np.empty(shape[0]),
             np.empty((shape[0], y0.size)),
             np.empty(shape),
-            np.empty((shape[0], 2)),
+            np.empty((shape[0], 3, 2)),
         )
         push = self.kernel.start_records(t0, np.asarray(y0, dtype=float), self._arm, self.records)
         self.next_step = first_step
