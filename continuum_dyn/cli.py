@@ -4,36 +4,82 @@ import signal
 import sys
 from collections.abc import Callable
 from functools import wraps
+from importlib.metadata import version
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
-from continuum_dyn.commands import cost, explain, hard, modes, play, reproduce, run
+from continuum_dyn.commands import cost, explain, hard, init, modes, play, reproduce, run, schema
+from continuum_dyn.commands.shared_options import (
+    Quiet,
+    Verbose,
+    WithoutCache,
+    with_shared_options,
+)
 from statics.errors import ContinuumError
-from statics.kernel_files import no_cache
 
 BAD_INPUT = 2
 INTERRUPTED = 130
 
+COMMANDS = (
+    ("Simulate and look", run.run),
+    ("Simulate and look", play.play),
+    ("Understand", explain.explain),
+    ("Understand", modes.modes),
+    ("Understand", cost.cost),
+    ("Scenario files", init.init),
+    ("Scenario files", schema.schema),
+    ("Check the program", hard.hard),
+    ("Check the program", reproduce.reproduce),
+)
+"""Each command under the heading that it has in the help, in the order that it is listed in."""
+
+EXIT_STATUSES = """\
+**Exit status**
+
+- 0: answered; that it has not settled is an answer, too
+- 1: not answered, or a check that failed
+- 2: bad input, or what cannot be read or written
+- 130: interrupted; what was computed by then is on disk
+"""
+
+
+def _without_types(parameters: list[Any]) -> list[Any]:
+    """The help names no type of a flag, which takes no value, nor of an argument, whose name says it."""
+    for parameter in parameters:
+        if getattr(parameter, "is_flag", False):
+            parameter.metavar = ""
+        elif parameter.param_type_name == "argument":
+            parameter.display_type_rich = lambda **_: ""
+    return parameters
+
+
+class _Command(TyperCommand):
+    def get_params(self, ctx: Any) -> list[Any]:
+        return _without_types(super().get_params(ctx))
+
+
+class _Group(TyperGroup):
+    def get_params(self, ctx: Any) -> list[Any]:
+        return _without_types(super().get_params(ctx))
+
+
 app = typer.Typer(
     name="continuum-dyn",
+    cls=_Group,
     no_args_is_help=True,
-    add_completion=False,
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
+    epilog=EXIT_STATUSES,
+    context_settings={"help_option_names": ["--help", "-h"]},
 )
 
 
-@app.callback()
-def options(
-    context: typer.Context,
-    without_cache: Annotated[
-        bool, typer.Option("--no-cache", help="Compile anew, and keep nothing of it.")
-    ] = False,
-) -> None:
-    """Statics and dynamics of planar cable-driven continuum arms."""
-    if without_cache:
-        context.with_resource(no_cache())
+def _show_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"continuum-dyn {version('continuum-dyn')}")
+        raise typer.Exit
 
 
 def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
@@ -53,8 +99,20 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
     return guarded
 
 
-for _command in (run.run, play.play, explain.explain, modes.modes, cost.cost, hard.hard, reproduce.reproduce):
-    app.command()(with_exit_status(_command))
+@app.callback()
+def options(
+    be_quiet: Quiet = False,
+    be_verbose: Verbose = False,
+    without_cache: WithoutCache = False,
+    show_version: Annotated[
+        bool, typer.Option("--version", help="Print the version.", callback=_show_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Statics and dynamics of planar cable-driven continuum arms."""
+
+
+for _panel, _command in COMMANDS:
+    app.command(cls=_Command, rich_help_panel=_panel)(with_exit_status(with_shared_options(_command)))
 
 
 def main() -> None:

@@ -14,20 +14,42 @@ from statics.outcome import Outcome
 class Expect:
     """How a motion must end, by which methods, and what it may be off by; bounds left out are not checked.
 
-    ``steps`` names the methods that claim the case and the most steps that each may take. ``tip_error`` (m)
-    bounds the largest distance of the tip from that of a much tighter run, over the samples up to ``horizon``
-    (s; all by default) and for each method, so that any two agree within twice that. ``settled_gap`` (m) is
-    the tip's distance from a stable equilibrium at the end. In parts of the largest energy of the motion:
-    ``ledger``, energy stored less work put in plus energy dissipated, and ``energy_growth``, the largest rise
-    of the energy beyond the work put in. In parts of the range of the kinetic energy: ``energy_trend``, the
-    slope of the total energy times the duration.
+    ``tip_error`` holds for each method that claims the case, so that any two agree within twice that.
     """
 
-    outcome: Annotated[Outcome, Field(strict=False)]
-    steps: Annotated[dict[Method, int], Field(min_length=1)]
-    tip_error: Positive | None = None
-    horizon: Positive | None = None
-    settled_gap: Positive | None = None
-    ledger: Positive | None = None
-    energy_growth: Positive | None = None
-    energy_trend: Positive | None = None
+    outcome: Annotated[Outcome, Field(strict=False, description="how the motion ends")]
+    steps: Annotated[
+        dict[Method, int],
+        Field(min_length=1, description="methods that claim the case, and the most steps that each may take"),
+    ]
+    tip_error: Annotated[
+        Positive | None,
+        Field(description="largest distance of the tip from that of a much tighter run, over the samples, m"),
+    ] = None
+    horizon: Annotated[
+        Positive | None, Field(description="time up to which tip_error holds, s; by default the end")
+    ] = None
+    settled_gap: Annotated[
+        Positive | None, Field(description="distance of the tip from a stable equilibrium at the end, m")
+    ] = None
+    ledger: Annotated[
+        Positive | None,
+        Field(
+            description="energy stored less work put in plus energy dissipated, in parts of the largest "
+            "energy of the motion"
+        ),
+    ] = None
+    energy_growth: Annotated[
+        Positive | None,
+        Field(
+            description="largest rise of the energy beyond the work put in, in parts of the largest energy "
+            "of the motion"
+        ),
+    ] = None
+    energy_trend: Annotated[
+        Positive | None,
+        Field(
+            description="slope of the total energy times the duration, in parts of the range of the kinetic "
+            "energy"
+        ),
+    ] = None

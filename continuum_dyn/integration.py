@@ -8,7 +8,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.integrate import OdeSolver
@@ -17,8 +17,9 @@ from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Span, inputs_of, joined_spans
+from continuum_dyn.samples import Samples
 from continuum_dyn.study import Solver
-from continuum_dyn.trajectory import Trajectory, trajectory_of
+from continuum_dyn.trajectory import Trajectory
 from statics.outcome import Outcome
 
 BRIEF = 1e-12
@@ -68,12 +69,6 @@ def add_jump(dynamics: Dynamics, before: Span, span: Span, monitor: Monitor) -> 
     monitor.reached = (t, y)
 
 
-class _Samples(NamedTuple):
-    time: np.ndarray
-    states: np.ndarray
-    inputs: np.ndarray
-
-
 def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome, str] | None]:
     """What a monitor asks of every accepted state: finite, and within the geometric limits."""
 
@@ -97,19 +92,24 @@ def integrate(
     y: np.ndarray,
     solver: Solver,
     monitor: Monitor,
+    gathered: Samples | None = None,
 ) -> Trajectory:
     """The motion from state ``y`` over all spans, at ``samples`` (s; both ends included).
 
-    A run that the monitor stops early keeps the samples up to there, and the last acceptable state. Raises
-    ``InputError`` where the method cannot integrate the scene.
+    They join those that are ``gathered`` already. A run that the monitor stops early keeps the samples up to
+    there, and the last acceptable state. Raises ``InputError`` where the method cannot integrate the scene.
     """
     check(dynamics.scene, solver.method)
-    monitor.reached = (0.0, y)
+    start = stretches[0].start
+    monitor.reached = (start, y)
     steps, rejections = monitor.steps, monitor.rejections
     solver = with_step(dynamics, solver, stretches, y)
-    parts = [_Samples(samples[:1], y[None, :], stretches[0].inputs(samples[:1]))]
+    gathered = gathered or Samples(dynamics)
+    samples = samples[samples > gathered.latest]
+    done = int(np.searchsorted(samples, start, side="right"))
+    gathered.add(samples[:done], np.tile(y, (done, 1)), stretches[0].inputs(samples[:done]))
     counters: Counter[str] = Counter()
-    before, done = None, 1
+    before = None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for joined in _joined(dynamics, solver, stretches):
@@ -118,33 +118,27 @@ def integrate(
             before = joined[-1]
             side = "right" if before is stretches[-1] else "left"
             until = int(np.searchsorted(samples, before.end, side=side))
-            stepper, states = _solve(dynamics, solver, joined, samples[done:until], monitor)
-            time = samples[done : done + len(states)]
-            parts.append(_Samples(time, states, inputs_of(joined, time)))
+            stepper = _solve(dynamics, solver, joined, samples[done:until], monitor, gathered)
             counters.update(_counted(stepper, dynamics, solver))
             if stepper.status == "failed":
-                parts.append(_last_reached(parts, joined, monitor.reached))
+                _add_last_reached(gathered, joined, monitor.reached)
                 break
             done = until
-    times, states, inputs = (np.concatenate(column) for column in zip(*parts, strict=True))
     counters["steps"] = monitor.steps - steps
     if solver.method in TABLEAUX:
         counters["rejections"] = monitor.rejections - rejections
-    whole = trajectory_of(dynamics, times, states, inputs, dict(counters))
-    finite = whole.finite()
-    if finite.time.size < whole.time.size:
-        monitor.stop(Outcome.DIVERGED, f"energies overflow at t = {times[finite.time.size]:.6g} s")
-    return finite
+    trajectory = gathered.trajectory(dict(counters))
+    if gathered.overflow is not None:
+        monitor.stop(Outcome.DIVERGED, f"energies overflow at t = {gathered.overflow:.6g} s")
+    return trajectory
 
 
-def _last_reached(
-    parts: list[_Samples], joined: Sequence[Span], reached: tuple[float, np.ndarray]
-) -> _Samples:
+def _add_last_reached(gathered: Samples, joined: Sequence[Span], reached: tuple[float, np.ndarray]) -> None:
     """The last acceptable state of a run that stopped early, unless it is a sample already."""
     t, y = reached
-    sampled = any(part.time.size and part.time[-1] >= t for part in parts)
-    time = np.array([] if sampled else [t])
-    return _Samples(time, np.tile(y, (time.size, 1)), inputs_of(joined, time))
+    if t > gathered.latest:
+        time = np.array([t])
+        gathered.add(time, y[None, :], inputs_of(joined, time))
 
 
 def _counted(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
@@ -180,9 +174,14 @@ def _joined(dynamics: Dynamics, solver: Solver, stretches: list[Span]) -> list[l
 
 
 def _solve(
-    dynamics: Dynamics, solver: Solver, joined: list[Span], at: np.ndarray, monitor: Monitor
-) -> tuple[OdeSolver, np.ndarray]:
-    """The solver after its last step from where the monitor is, and states at the times that it came to.
+    dynamics: Dynamics,
+    solver: Solver,
+    joined: list[Span],
+    at: np.ndarray,
+    monitor: Monitor,
+    gathered: Samples,
+) -> OdeSolver:
+    """The solver after its last step from where the monitor is; states at the times ``at`` are gathered.
 
     A step that the monitor ends the run after is sampled like any other, unless its end is not acceptable.
     """
@@ -194,15 +193,16 @@ def _solve(
         monitor=monitor,
         **_options(dynamics, solver, joined),
     )
-    found, done = [np.empty((0, dynamics.state_size))], 0
+    done = 0
     while stepper.status == "running":
         stepper.step()
         until = int(np.searchsorted(at, stepper.t, side="right"))
         acceptable = stepper.t_old is not None and monitor.reached[0] == stepper.t
         if acceptable and until > done:
-            found.append(stepper.dense_output()(at[done:until]).T)
+            times = at[done:until]
+            gathered.add(times, stepper.dense_output()(times).T, inputs_of(joined, times))
             done = until
-    return stepper, np.concatenate(found)
+    return stepper
 
 
 def _options(dynamics: Dynamics, solver: Solver, joined: list[Span]) -> dict[str, Any]:

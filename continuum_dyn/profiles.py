@@ -8,6 +8,7 @@ from its start to the next one's, so its derivative is a piece, too. At a jump t
 """
 
 import dataclasses
+from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import pairwise
 from math import pi, sin
@@ -26,6 +27,12 @@ TIME_RESOLUTION = 1e-300
 SAME = 1e-12
 """Part of a value by which rounding may part the two pieces that meet in it."""
 
+Value = Annotated[float, Field(description="value at all times, in the unit of what is driven")]
+Before = Annotated[float, Field(description="value until then, in the unit of what is driven")]
+After = Annotated[float, Field(description="value from then on, in the unit of what is driven")]
+Start = Annotated[NonNegative, Field(description="time at which the ramp starts, s")]
+End = Annotated[Positive, Field(description="time at which the ramp ends, s")]
+
 Piece = tuple[float, float, float, float, float, float]
 """Start (s), value, slope (1/s), amplitude, angular frequency (rad/s), phase; values in N for a tension."""
 
@@ -39,7 +46,7 @@ def straight(start: float, value: float, slope: float = 0.0) -> Piece:
 class Constant:
     """``value`` at all times."""
 
-    value: float
+    value: Value
     profile: Literal["constant"] = "constant"
 
     @property
@@ -59,9 +66,9 @@ class Step:
     With ``at`` = 0 the arm starts from the equilibrium of ``before``.
     """
 
-    before: float
-    after: float
-    at: NonNegative = 0.0
+    before: Before
+    after: After
+    at: Annotated[NonNegative, Field(description="time of the step, s")] = 0.0
     profile: Literal["step"] = "step"
 
     @property
@@ -79,10 +86,10 @@ class Step:
 class Ramp:
     """``before`` until ``start``, ``after`` from ``end`` on, linear between."""
 
-    before: float
-    after: float
-    start: NonNegative
-    end: Positive
+    before: Before
+    after: After
+    start: Start
+    end: End
     profile: Literal["ramp"] = "ramp"
 
     def __post_init__(self) -> None:
@@ -107,10 +114,10 @@ class SmoothRamp:
     It has no jump and no corner; its second derivative jumps at both ends.
     """
 
-    before: float
-    after: float
-    start: NonNegative
-    end: Positive
+    before: Before
+    after: After
+    start: Start
+    end: End
     profile: Literal["smooth_ramp"] = "smooth_ramp"
 
     def __post_init__(self) -> None:
@@ -140,10 +147,10 @@ def _check_order(start: float, end: float) -> None:
 class Sine:
     """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t + ``phase``); ``phase`` in rad."""
 
-    mean: float
-    amplitude: float
-    frequency: Positive
-    phase: float = 0.0
+    mean: Annotated[float, Field(description="mean value, in the unit of what is driven")]
+    amplitude: Annotated[float, Field(description="amplitude, in the unit of what is driven")]
+    frequency: Annotated[Positive, Field(description="frequency, Hz")]
+    phase: Annotated[float, Field(description="phase at the start, rad")] = 0.0
     profile: Literal["sine"] = "sine"
 
     @property
@@ -256,6 +263,12 @@ def spans(profiles: Sequence[InPieces], duration: float) -> list[Span]:
     return result
 
 
+def spans_from(stretches: Sequence[Span], time: float) -> list[Span]:
+    """What of the spans comes after a time (s)."""
+    left = [span for span in stretches if span.end > time]
+    return [dataclasses.replace(span, start=max(span.start, time)) for span in left]
+
+
 def joined_spans(stretches: Sequence[Span]) -> list[list[Span]]:
     """The spans in groups within which no input jumps and no wave sets in."""
     groups = [[stretches[0]]]
@@ -276,9 +289,10 @@ def _goes_on(before: Span, span: Span) -> bool:
 
 def inputs_of(joined: Sequence[Span], time: np.ndarray) -> np.ndarray:
     """Values at increasing times within consecutive spans, shape (times, profiles); later spans count."""
-    edges = np.searchsorted(time, [span.start for span in joined[1:]])
+    if not time.size:
+        return joined[0].inputs(time)
+    first, last = (bisect_right(joined, float(t), key=lambda span: span.start) for t in (time[0], time[-1]))
+    known = joined[max(first - 1, 0) : max(last, 1)]
+    edges = np.searchsorted(time, [span.start for span in known[1:]])
     parts = np.split(time, edges)
-    return np.concatenate(
-        [span.inputs(part) for span, part in zip(joined, parts, strict=True) if part.size]
-        or [joined[0].inputs(time)]
-    )
+    return np.concatenate([span.inputs(part) for span, part in zip(known, parts, strict=True)])

@@ -6,6 +6,7 @@ with its place, what was read, and the nearest allowed word.
 
 import json
 import tomllib
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from continuum_dyn.expect import Expect
+from continuum_dyn.overrides import overridden
 from continuum_dyn.profiles import Constant, Profile
 from continuum_dyn.scenario_errors import explain
 from continuum_dyn.scenario_file import (
@@ -25,7 +27,7 @@ from continuum_dyn.scenario_file import (
     TableFile,
 )
 from continuum_dyn.study import RampStudy, Scenario
-from continuum_dyn.table_file import read_table
+from continuum_dyn.table_file import Tables, table_text
 from continuum_dyn.text_file import read_text
 from statics.arm import PRESETS, Arm, Base, Cable, Each
 from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
@@ -38,25 +40,37 @@ LARGEST = 1e30
 """Size of the largest number of a scenario; that of the smallest is one over it."""
 
 
-def load_scenario(path: str | Path) -> Scenario:
-    """Read and check a scenario file.
+def load_scenario(path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
+    """Read and check a scenario file, with changes such as "arm.disks=16" made to it.
 
     Raises ``InputError`` whose text names the file, every place in it that is wrong, what is allowed
     there and the nearest match.
     """
-    return load_expecting(path)[0]
+    return load_expecting(path, overrides)[0]
 
 
-def load_expecting(path: str | Path) -> tuple[Scenario, Expect | None]:
+def load_expecting(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Scenario, Expect | None]:
     """The scenario, and what it expects of its run. Raises ``InputError`` like ``load_scenario``."""
     path = Path(path)
     text = read_text(path, MAX_FILE_SIZE)
+    return parse(text, path, lambda name: table_text(path, name), overrides)
+
+
+def parse(
+    text: str, path: Path, text_of_table: Callable[[str], str], overrides: Sequence[str] = ()
+) -> tuple[Scenario, Expect | None]:
+    """The scenario of a file's text, and what it expects; ``path`` is for titles and messages.
+
+    ``text_of_table`` gives the text of a table by the name that the scenario calls it. Raises ``InputError``
+    like ``load_scenario``.
+    """
     try:
+        text = overridden(text, path.name, overrides)
         content = tomllib.loads(text)
         _check_sizes(content, "")
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
         _check_tolerances(content)
-        return _build(file, path, text), file.expect
+        return _build(file, path.stem, text, Tables(text_of_table)), file.expect
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not a TOML file: {error}.") from error
     except ValidationError as error:
@@ -101,7 +115,7 @@ def _check_tolerances(content: dict[str, Any]) -> None:
         )
 
 
-def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
+def _build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     is_ramp = isinstance(file.study, RampStudy)
     effects = [
         effect for name in EffectsTable.model_fields if (effect := getattr(file.effects, name)) is not None
@@ -112,16 +126,16 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         effects.append(CableFriction())
     if file.loads:
         effects.append(DiskLoads(loads=tuple(map(_load, file.loads))))
-    tension = tuple(_ramp_or_profile(*_drive(cable), path, is_ramp) for cable in file.cables)
+    tension = tuple(_ramp_or_profile(*_drive(cable), tables, is_ramp) for cable in file.cables)
     factors = tuple(
-        _ramp_or_profile(load.factor, "factor", path, is_ramp, "loads")
+        _ramp_or_profile(load.factor, "factor", tables, is_ramp, "loads")
         for load in file.loads
         if load.factor is not None
     )
     if is_ramp:
         repeated = _repeated((*tension, *factors))
         tension, factors = repeated[: len(tension)], repeated[len(tension) :]
-    motion = _base_motion(file.base, path) if file.base is not None else ()
+    motion = _base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
     return Scenario(
@@ -133,8 +147,9 @@ def _build(file: ScenarioFile, path: Path, text: str) -> Scenario:
         load_factors=factors,
         base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
-        title=file.title or path.stem,
+        title=file.title or name,
         text=text,
+        tables=tables.texts,
     )
 
 
@@ -214,7 +229,7 @@ def _drive(cable: CableTable) -> tuple[Any, str]:
     return given[known[0]], known[0]
 
 
-def _ramp_or_profile(drive: Any, quantity: str, path: Path, is_ramp: bool, table: str = "cables") -> Any:
+def _ramp_or_profile(drive: Any, quantity: str, tables: Tables, is_ramp: bool, table: str = "cables") -> Any:
     if is_ramp:
         if isinstance(drive, float | int):
             return (float(drive),)
@@ -225,18 +240,18 @@ def _ramp_or_profile(drive: Any, quantity: str, path: Path, is_ramp: bool, table
         return tuple(map(float, drive))
     if isinstance(drive, list):
         raise InputError(f'[[{table}]] a list for {quantity} belongs to [study] kind = "ramp".')
-    return _profile(drive, path, quantity)
+    return _profile(drive, tables, quantity)
 
 
-def _profile(given: Any, path: Path, quantity: str) -> Profile:
+def _profile(given: Any, tables: Tables, quantity: str) -> Profile:
     """A profile from a number, a table in the file, or a CSV file beside it."""
     if isinstance(given, float | int):
         return Constant(float(given))
-    return read_table(path, given.file, quantity) if isinstance(given, TableFile) else given
+    return tables.profile(given.file, quantity) if isinstance(given, TableFile) else given
 
 
-def _base_motion(base: BaseTable, path: Path) -> tuple[Profile, ...]:
-    return tuple(_profile(getattr(base, name), path, name) for name in BaseTable.model_fields)
+def _base_motion(base: BaseTable, tables: Tables) -> tuple[Profile, ...]:
+    return tuple(_profile(getattr(base, name), tables, name) for name in BaseTable.model_fields)
 
 
 def _load(load: LoadTable) -> DiskLoad:

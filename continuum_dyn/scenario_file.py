@@ -1,8 +1,8 @@
 """What a scenario file may hold: its tables, their keys and the types of their values."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Discriminator, Field, Tag, create_model
+from pydantic import BaseModel, Discriminator, Field, Tag, WithJsonSchema, create_model
 
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.expect import Expect
@@ -15,7 +15,7 @@ from continuum_dyn.study import (
     Solver,
     StepResponseStudy,
 )
-from statics.arm import DiskNumber, Payload, PerDisk
+from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, Payload, PerDisk
 from statics.checked import STRICT, Line, NonNegative, Positive, Vector
 
 
@@ -23,14 +23,19 @@ class TableFile(BaseModel):
     """A profile kept in a CSV file beside the scenario."""
 
     model_config = STRICT
-    profile: str
-    file: Line
+    profile: Literal["table"]
+    file: Annotated[
+        Line, Field(description="CSV file beside the scenario; its first line is time,tension or the like")
+    ]
+
+
+UNKNOWN_PROFILE = "unknown profile"
 
 
 def _drive_kind(value: Any) -> str:
     if isinstance(value, dict):
         kind = value.get("profile")
-        return kind if isinstance(kind, str) and kind in PROFILES else "profile"
+        return kind if isinstance(kind, str) and kind in PROFILES else UNKNOWN_PROFILE
     return "list" if isinstance(value, list) else "number"
 
 
@@ -47,7 +52,7 @@ ProfileTable = (
     | Annotated[SmoothRamp, Tag("smooth_ramp")]
     | Annotated[Sine, Tag("sine")]
     | Annotated[TableFile, Tag("table")]
-    | Annotated[UnknownProfile, Tag("profile")]
+    | Annotated[UnknownProfile, Tag(UNKNOWN_PROFILE)]
 )
 Tension = Annotated[
     Annotated[NonNegative, Tag("number")]
@@ -81,11 +86,19 @@ NumberEach = Annotated[
 """One number, or a list of them: one for each disk."""
 
 
+Preset = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(PRESETS)})]
+"""Others are refused where the arm is made, with the nearest of them."""
+
+SUBSEGMENTS = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_SEGMENTS}, {"const": "auto"}]}
+
+
 class ArmTable(BaseModel):
-    """[arm]: what is given beats the preset."""
+    """[arm]: its numbers; what is given beats the preset."""
 
     model_config = STRICT
-    preset: Line | None = None
+    preset: Annotated[
+        Preset | None, Field(description="the arm of a paper: its numbers hold where none are given")
+    ] = None
     disks: DiskNumber | None = None
     disk_spacing: PositiveEach | None = None
     youngs_modulus: PositiveEach | None = None
@@ -96,14 +109,20 @@ class ArmTable(BaseModel):
     disk_inertia: PositiveEach | None = None
     core_density: Positive | None = None
     reference_curvature: NumberEach | None = None
-    subsegments: int | Line | None = None
+    subsegments: Annotated[
+        Annotated[int | Line, WithJsonSchema(SUBSEGMENTS)] | None,
+        Field(description='number of segments from disk to disk; "auto": as many as [accuracy] needs'),
+    ] = None
 
 
 class CableTable(BaseModel):
     """One of [[cables]]: driven by its tension, or by its displacement with its stiffness."""
 
     model_config = STRICT
-    name: Annotated[Line, Field(min_length=1, max_length=40)] | None = None
+    name: Annotated[
+        Annotated[Line, Field(min_length=1, max_length=40)] | None,
+        Field(description="what the cable is called in results, logs and plots"),
+    ] = None
     hole_offset: NumberEach
     anchor: DiskNumber | None = None
     tension: Tension | None = None
@@ -139,20 +158,21 @@ NAMED_ELSEWHERE = ("cables", "cable_friction", "loads")
 EffectsTable: type[BaseModel] = create_model(
     "EffectsTable",
     __config__=STRICT,
+    __doc__="[effects]: the effects in play; what is not named is in no equation.",
     **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
 )
 
 StudyTable = Annotated[
     EquilibriumStudy | RampStudy | MotionStudy | StepResponseStudy,
-    Field(discriminator="kind"),
+    Field(discriminator="kind", description="[study]: what is asked of the arm."),
 ]
 
 
 class ScenarioFile(BaseModel):
-    """The whole file."""
+    """A scenario of continuum-dyn: an arm, the effects in play, and what is asked."""
 
     model_config = STRICT
-    title: Line = ""
+    title: Annotated[Line, Field(description="what results, logs and plots are headed with")] = ""
     arm: ArmTable
     base: BaseTable | None = None
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]

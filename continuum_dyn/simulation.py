@@ -6,18 +6,20 @@ Every run ends in a named outcome and keeps what it computed.
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from continuum_dyn.accuracy import to_accuracy
+from continuum_dyn.begun import Begun
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.energy_balance import broken_ledger
 from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
-from continuum_dyn.profiles import Span, spans
+from continuum_dyn.profiles import Span, spans, spans_from
 from continuum_dyn.resting_words import told_of_path, told_of_points, why
+from continuum_dyn.samples import Samples
 from continuum_dyn.settling import settled, tip_gap
 from continuum_dyn.stability import Growth, judged, why_not_judged
 from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
@@ -28,6 +30,7 @@ from statics.equilibria import Equilibrium, StaticSolver
 from statics.interruption import Interruption, allowed, held
 from statics.outcome import Outcome
 from statics.ramp import limit_on_the_way, ramp
+from statics.stages import stage
 
 TIME_PART = 0.25
 """Part of the accuracy that a mesh's integration may use up; two extrapolated use nearly twice that."""
@@ -76,13 +79,29 @@ class Run:
         return found[-1].tip if found else None
 
 
+class Sink(Protocol):
+    """Who is told of a motion while it runs."""
+
+    def begin(self, run: Run) -> None:
+        """A motion begins; the run holds what is known of it. Where an accuracy is sought, once a trial."""
+
+    def add(self, block: Trajectory) -> None:
+        """Its next samples; those since the last block are in the answer alone."""
+
+
 def simulate(
-    scenario: Scenario, progress: Callable[[float], None] | None = None, budget: Budget | None = None
+    scenario: Scenario,
+    progress: Callable[[float], None] | None = None,
+    budget: Budget | None = None,
+    *,
+    sink: Sink | None = None,
+    begun: Begun | None = None,
 ) -> Run:
     """Answer a scenario: see ``Run``.
 
     ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion, by
-    default those of the scenario's solver.
+    default those of the scenario's solver. The ``sink`` is told of a motion while it runs. A motion that was
+    ``begun`` goes on from its last sample; where an accuracy is sought its trials begin anew.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
     kept. Whatever happens while solving is an outcome, not an exception, Ctrl-C too: what was computed by
     then is in the run. Pressed again, it raises ``KeyboardInterrupt``.
@@ -91,9 +110,9 @@ def simulate(
         budget = Budget(scenario.solver.max_steps, scenario.solver.max_seconds)
     with held() as interruption:
         if scenario.chooses_mesh:
-            run = _with_chosen_mesh(scenario, progress, budget)
+            run = _with_chosen_mesh(scenario, progress, budget, sink)
         elif isinstance(scenario.study, MotionStudy):
-            run = _motion(scenario, scenario.study, progress, budget, interruption)
+            run = _motion(scenario, scenario.study, progress, budget, interruption, sink, begun)
         else:
             run = _statics(scenario, interruption)
         if run.outcome is Outcome.INTERRUPTED:
@@ -101,7 +120,9 @@ def simulate(
     return run
 
 
-def _with_chosen_mesh(scenario: Scenario, progress: Callable[[float], None] | None, budget: Budget) -> Run:
+def _with_chosen_mesh(
+    scenario: Scenario, progress: Callable[[float], None] | None, budget: Budget, sink: Sink | None
+) -> Run:
     """The answer on the coarsest mesh that is fine enough, and the estimate of all of its error."""
     assert scenario.accuracy is not None
     runs: dict[int, Run] = {}
@@ -109,7 +130,8 @@ def _with_chosen_mesh(scenario: Scenario, progress: Callable[[float], None] | No
     def tips(subsegments: int) -> np.ndarray | None:
         if subsegments not in runs:
             left = replace(budget, seconds=budget.seconds - (time.monotonic() - started))
-            runs[subsegments] = simulate(scenario.with_mesh(subsegments, TIME_PART * asked), progress, left)
+            trial = scenario.with_mesh(subsegments, TIME_PART * asked)
+            runs[subsegments] = simulate(trial, progress, left, sink=sink)
         return runs[subsegments].tips
 
     started, asked, arm = time.monotonic(), scenario.accuracy.tip, scenario.scene.arm
@@ -156,7 +178,7 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
 
 def _statics(scenario: Scenario, interruption: Interruption) -> Run:
     try:
-        with allowed():
+        with allowed(), stage("kernels of statics"):
             solver = StaticSolver(scenario.scene)
             solver.warm_up()
     except KeyboardInterrupt:
@@ -172,7 +194,8 @@ def _statics(scenario: Scenario, interruption: Interruption) -> Run:
         path = follow(solver, inputs)
         solve_time = time.perf_counter() - started
         return Run(scenario, path.outcome, told_of_path(path), path.points, solve_time=solve_time)
-    points = ramp(solver, interruption.until_asked(inputs))
+    with stage("equilibria"):
+        points = ramp(solver, interruption.until_asked(inputs))
     solve_time = time.perf_counter() - started
     message, growths = told_of_points(points), [None] * len(points)
     if any(point.stable is None for point in points):
@@ -226,9 +249,11 @@ def _motion(
     progress: Callable[[float], None] | None,
     budget: Budget,
     interruption: Interruption,
+    sink: Sink | None,
+    begun: Begun | None,
 ) -> Run:
     try:
-        with allowed():
+        with allowed(), stage("kernels of statics and dynamics"):
             statics, dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
             statics.warm_up()
     except KeyboardInterrupt:
@@ -242,8 +267,8 @@ def _motion(
         return Run(scenario, start.outcome, why(start, None, limit), [start], solve_time=solve_time)
     y = dynamics.state(start.coordinates)
     try:
-        with allowed():
-            solver = _settled_on(scenario, study, dynamics, y, stretches)
+        with allowed(), stage("choice of the method, and its kernels"):
+            solver = begun.solver if begun else _settled_on(scenario, study, dynamics, y, stretches)
             warm_up(dynamics, solver, stretches[0])
     except KeyboardInterrupt:
         return Run(scenario, Outcome.INTERRUPTED, "interrupted before the motion began", [start])
@@ -254,7 +279,14 @@ def _motion(
         budget=budget,
         interruption=interruption,
     )
-    moved = _moved(scenario, study, solver, dynamics, stretches, start, monitor)
+    so_far = Run(scenario, Outcome.INTERRUPTED, "broken off while it ran", [start], solver=solver)
+    with stage(f"motion by {solver.method}"):
+        if scenario.accuracy is not None:
+            moved = _moved_accurately(so_far, dynamics, stretches, y, monitor, sink)
+        elif begun is not None:
+            moved = _Moved(_moved_on(so_far, begun, dynamics, stretches, monitor, sink), solver, None)
+        else:
+            moved = _Moved(_moved(so_far, dynamics, stretches, y, monitor, sink), solver, None)
     _check_energies(scenario, moved, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)
@@ -320,30 +352,67 @@ class _Moved(NamedTuple):
 
 
 def _moved(
-    scenario: Scenario,
-    study: MotionStudy,
-    solver: Solver,
+    so_far: Run,
     dynamics: Dynamics,
     stretches: list[Span],
-    start: Equilibrium,
+    y: np.ndarray,
     monitor: Monitor,
-) -> _Moved:
-    """The motion with the solver's tolerances, or with those that the scenario's accuracy takes."""
+    sink: Sink | None,
+    done: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+) -> Trajectory:
+    """The motion from state ``y`` with the run's solver, after the times, states and inputs already done."""
+    assert isinstance(so_far.scenario.study, MotionStudy)
+    assert so_far.solver is not None
+    study, gathered = so_far.scenario.study, Samples(dynamics, None if sink is None else sink.add)
+    if sink is not None:
+        sink.begin(so_far)
+    if done is not None:
+        gathered.add(*done)
     samples = np.linspace(0.0, study.duration, study.samples)
-    y = dynamics.state(start.coordinates)
+    return integrate(dynamics, stretches, samples, y, so_far.solver, monitor, gathered)
+
+
+def _moved_on(
+    so_far: Run, begun: Begun, dynamics: Dynamics, stretches: list[Span], monitor: Monitor, sink: Sink | None
+) -> Trajectory:
+    """The motion from where it was broken off; its samples are those asked for, as of one in one go."""
+    assert isinstance(so_far.scenario.study, MotionStudy)
+    study, times = so_far.scenario.study, begun.columns["time"]
+    states, inputs = begun.states(dynamics, stretches)
+    asked = np.isin(times, np.linspace(0.0, study.duration, study.samples))
+    done = times[asked], states[asked], inputs[asked]
+    rest = spans_from(stretches, float(times[-1]))
+    if not rest:
+        gathered = Samples(dynamics)
+        gathered.add(*done)
+        return gathered.trajectory(dict(begun.counters))
+    trajectory = _moved(so_far, dynamics, rest, states[-1], monitor, sink, done)
+    counters = {name: count + begun.counters.get(name, 0) for name, count in trajectory.counters.items()}
+    return replace(trajectory, counters=counters)
+
+
+def _moved_accurately(
+    so_far: Run,
+    dynamics: Dynamics,
+    stretches: list[Span],
+    y: np.ndarray,
+    monitor: Monitor,
+    sink: Sink | None,
+) -> _Moved:
+    """The motion with the tolerances that the scenario's accuracy takes."""
+    scenario = so_far.scenario
+    assert scenario.accuracy is not None
+    assert so_far.solver is not None
     last: list[_Moved] = []
 
     def run(settings: Solver) -> Trajectory | None:
-        trajectory = integrate(dynamics, stretches, samples, y, settings, monitor)
+        trajectory = _moved(replace(so_far, solver=settings), dynamics, stretches, y, monitor, sink)
         last.append(_Moved(trajectory, settings, None))
         return None if monitor.outcome else trajectory
 
-    if scenario.accuracy is None:
-        run(solver)
-        return last[-1]
     asked = scenario.accuracy.tip
     started = time.perf_counter()
-    found = to_accuracy(run, solver, asked, scenario.scene.arm.total_length)
+    found = to_accuracy(run, so_far.solver, asked, scenario.scene.arm.total_length)
     if found is None:
         return last[-1]
     if not found.reached:

@@ -1,6 +1,7 @@
 """What is asked of a scene: the kinds of study, the solver's settings, and the scenario that joins them."""
 
 import dataclasses
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -30,39 +31,47 @@ class EquilibriumStudy:
 
 @dataclass(frozen=True, config=STRICT)
 class RampStudy:
-    """Where the arm rests under one set of tensions and load factors after another.
+    """Where the arm rests under one set of tensions and load factors after another."""
 
-    Along the ``path`` "stable" each is a stable equilibrium, searched from the one before; "arc_length"
-    follows the path of equilibria from the first one through its folds, stable or not.
-    """
-
-    path: Literal["stable", "arc_length"] = "stable"
+    path: Annotated[
+        Literal["stable", "arc_length"],
+        Field(
+            description='"stable": each is a stable equilibrium, searched from the one before; "arc_length": '
+            "the path of equilibria from the first one on, through its folds, stable or not"
+        ),
+    ] = "stable"
     kind: Literal["ramp"] = "ramp"
 
 
 @dataclass(frozen=True, config=STRICT)
 class MotionStudy:
-    """How the arm moves from the equilibrium of the profiles' first tensions.
+    """How the arm moves from the equilibrium of the profiles' first tensions."""
 
-    ``duration`` in s; ``samples`` are uniform with both ends included; ``static_path`` asks for the
-    equilibrium of every sample's tensions as well.
-    """
-
-    duration: Positive
-    samples: Annotated[int, Field(ge=2, le=MAX_SAMPLES)] = 1001
-    static_path: bool = False
+    duration: Annotated[Positive, Field(description="length of the motion, s")]
+    samples: Annotated[
+        int, Field(ge=2, le=MAX_SAMPLES, description="number of samples: uniform, with both ends included")
+    ] = 1001
+    static_path: Annotated[
+        bool, Field(description="whether the equilibrium of every sample's tensions is asked for as well")
+    ] = False
     kind: Literal["motion"] = "motion"
 
 
 @dataclass(frozen=True, config=STRICT)
 class StepResponseStudy(MotionStudy):
-    """The same motion, and whether it has settled to the equilibrium of the last tensions.
+    """How the arm moves, and whether it has settled to the equilibrium of the last tensions.
 
-    Settled means: tip within ``settled_within`` (m; by default 1e-3 of the arm's length) of that
-    equilibrium's, and slower than that distance per second.
+    Settled means: tip within ``settled_within`` of that equilibrium's, and slower than that distance per
+    second.
     """
 
-    settled_within: Positive | None = None
+    settled_within: Annotated[
+        Positive | None,
+        Field(
+            description="distance of the tip from its final equilibrium below which it has settled, m; "
+            "by default 1e-3 of the arm's length"
+        ),
+    ] = None
     kind: Literal["step_response"] = "step_response"  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
@@ -101,10 +110,12 @@ class Solver:
 
     method: Method = "auto"
     rtol: Annotated[float, Field(ge=1e-14, lt=1)] = 1e-7
-    atol: Positive = 1e-9
+    atol: Annotated[Positive, Field(description="absolute tolerance of an integrator")] = 1e-9
     step: Positive | None = None
-    max_steps: Annotated[int, Field(ge=1)] = 10_000_000
-    max_seconds: Positive = 3600.0
+    max_steps: Annotated[int, Field(ge=1, description="most steps that a motion may take")] = 10_000_000
+    max_seconds: Annotated[
+        Positive, Field(description="longest time that a motion may take to compute, s")
+    ] = 3600.0
 
     def __post_init__(self) -> None:
         if self.step is not None and self.method != "midpoint":
@@ -123,13 +134,13 @@ class Solver:
 
 @dataclass(frozen=True, config=STRICT)
 class Accuracy:
-    """Largest tip error (m) over the samples, against the exact motion of the same segments.
+    """How close the tip must be to the exact motion of the same segments.
 
-    The program then chooses the tolerances, and checks. If it chooses the segments, too, the error is that
+    The program chooses the tolerances, and checks. If it chooses the segments, too, the error is that
     against the continuous arm.
     """
 
-    tip: Positive
+    tip: Annotated[Positive, Field(description="largest error of the tip over the samples, m")]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -137,9 +148,10 @@ class Scenario:
     """A scene, the tension of each of its cables, and what is asked of it.
 
     ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
-    ``text`` is the file that it was read from. With ``accuracy`` the solver's tolerances are the
-    program's to choose; with ``chooses_mesh`` the number of the arm's sub-segments, too. ``load_factors``
-    has likewise a profile or a list for each driven load, ``base_motion`` profiles of x, y (m) and angle
+    ``text`` is the file that it was read from, ``tables`` those of the CSV files beside it, by name. With
+    ``accuracy`` the solver's tolerances are the program's to choose; with ``chooses_mesh`` the number of the
+    arm's sub-segments, too. ``load_factors`` has likewise a profile or a list for each driven load,
+    ``base_motion`` profiles of x, y (m) and angle
     (rad) of a base that moves. Raises ``InputError`` where these do not fit.
     """
 
@@ -153,6 +165,7 @@ class Scenario:
     base_motion: tuple[Profile, ...] = ()
     title: str = ""
     text: str = ""
+    tables: Mapping[str, str] = dataclasses.field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         if len(self.tension) != self.scene.cables:

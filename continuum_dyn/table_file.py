@@ -1,6 +1,8 @@
 """A profile kept in a CSV file beside the scenario."""
 
 import csv
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from itertools import islice
 from math import inf
 from pathlib import Path
@@ -8,7 +10,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from continuum_dyn.profiles import Table
-from continuum_dyn.text_file import read_text
+from continuum_dyn.text_file import MAX_FILE_SIZE, read_text
 from statics.errors import InputError
 
 MAX_ROWS = 1_000_000
@@ -16,18 +18,41 @@ LARGEST = 1e30
 """Size of the largest number in a table."""
 
 
-def read_table(scenario: Path, name: str, quantity: str) -> Table:
-    """Read a table profile: CSV with the header ``time,tension`` (s, N), ``time,factor`` or the like.
+@dataclass(frozen=True)
+class Tables:
+    """The tables of a scenario: ``texts`` of those asked for, by name; ``read`` gives the others."""
 
-    Raises ``InputError`` that names the table and the row that is wrong.
-    """
+    read: Callable[[str], str]
+    texts: dict[str, str] = field(default_factory=dict)
+
+    def profile(self, name: str, quantity: str) -> Table:
+        """The table of that name. Raises ``InputError``, also where all tables are too large together."""
+        if name not in self.texts:
+            self.texts[name] = self.read(name)
+        if sum(map(len, self.texts.values())) > MAX_FILE_SIZE:
+            raise InputError(
+                f"table '{name}': larger than {MAX_FILE_SIZE // 1_000_000} MB with those before it."
+            )
+        return read_table(name, self.texts[name], quantity)
+
+
+def table_text(scenario: Path, name: str) -> str:
+    """The text of a table beside the scenario's file. Raises ``InputError`` that names the table."""
     folder = scenario.parent.resolve()
     path = (folder / name).resolve()
     if not path.is_relative_to(folder):
-        raise InputError(f"{quantity}: the table '{name}' lies outside the scenario's folder.")
+        raise InputError(f"the table '{name}' lies outside the scenario's folder.")
     if path.exists() and not path.is_file():
-        raise InputError(f"{quantity}: the table '{name}' is not a file.")
-    rows = _rows(name, read_text(path))
+        raise InputError(f"the table '{name}' is not a file.")
+    return read_text(path)
+
+
+def read_table(name: str, text: str, quantity: str) -> Table:
+    """A table profile from its text: CSV with the header ``time,tension`` (s, N), or ``time,factor``.
+
+    Raises ``InputError`` that names the table and the row that is wrong.
+    """
+    rows = _rows(name, text)
     if not rows or [cell.strip() for cell in rows[0]] != ["time", quantity]:
         found = ",".join(rows[0])[:60] if rows else "nothing"
         raise InputError(f"table '{name}': the first line must be time,{quantity}; read: {found}")

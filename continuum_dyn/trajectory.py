@@ -1,5 +1,6 @@
 """A motion at its samples."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -57,8 +58,15 @@ class Trajectory:
 
     def first(self, count: int) -> "Trajectory":
         """That many samples from the start on."""
-        cut = {name: value[:count] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        return replace(self, **cut, ledger={name: value[:count] for name, value in self.ledger.items()})
+        return self._part(slice(0, count))
+
+    def after(self, count: int) -> "Trajectory":
+        """The samples after that many."""
+        return self._part(slice(count, None))
+
+    def _part(self, rows: slice) -> "Trajectory":
+        cut = {name: value[rows] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        return replace(self, **cut, ledger={name: value[rows] for name, value in self.ledger.items()})
 
     @property
     def stored_energy(self) -> np.ndarray:
@@ -86,6 +94,20 @@ class Trajectory:
     def travel(self) -> float:
         """Largest distance of any disk from where it started, m."""
         return float(np.hypot(self.disk_x - self.disk_x[0], self.disk_y - self.disk_y[0]).max())
+
+
+def joined(blocks: Sequence[Trajectory], counters: dict[str, int]) -> Trajectory:
+    """One trajectory of several that follow each other."""
+    first = blocks[0]
+    if len(blocks) == 1:
+        return replace(first, counters=counters)
+    columns = {
+        name: np.concatenate([getattr(block, name) for block in blocks])
+        for name, value in vars(first).items()
+        if isinstance(value, np.ndarray)
+    }
+    ledger = {name: np.concatenate([block.ledger[name] for block in blocks]) for name in first.ledger}
+    return replace(first, **columns, ledger=ledger, counters=counters)
 
 
 def trajectory_of(

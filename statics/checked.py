@@ -18,4 +18,5 @@ def _printable(text: str) -> str:
     return text
 
 
-Line = Annotated[str, Field(max_length=200), AfterValidator(_printable)]
+LONGEST_LINE = 200
+Line = Annotated[str, Field(max_length=LONGEST_LINE), AfterValidator(_printable)]

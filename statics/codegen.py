@@ -22,6 +22,7 @@ from typing import Any
 from statics.effects import Effect
 from statics.kernel_files import kernel_folder, read_sealed, write_sealed
 from statics.scene import Scene
+from statics.stages import stage
 
 _HERE = Path(__file__).parent
 DERIVATION = tuple(
@@ -116,7 +117,8 @@ def _kept_text(scene: Scene, recipe: Recipe, path: Path) -> str:
     """The kernel's text from its file; made, or made again if it is not what was once written."""
     kept = read_sealed(path)
     if kept is None:
-        kept = recipe.write(scene).encode()
+        with stage(f"derived {recipe.kind}, {path.name}"):
+            kept = recipe.write(scene).encode()
         write_sealed(path, kept)
     return kept.decode()
 

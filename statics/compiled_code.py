@@ -7,6 +7,7 @@ function has a file of its own, named by all that its code depends on, and seale
 
 import hashlib
 import pickle
+import time
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,6 +17,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
 from statics.kernel_files import read_sealed, write_sealed
+from statics.stages import LOG
 
 
 def keep_compiled(module: ModuleType, path: Path, digest: str) -> None:
@@ -32,15 +34,18 @@ class _KeptCode:
     def __init__(self, stem: Path, digest: str) -> None:
         self.stem, self.digest = stem, digest
         self.cache_path = str(stem.parent)
+        self.asked = 0.0
 
     def load_overload(self, signature: Any, target: Any) -> CompileResult | None:
         """The code for these types of arguments, or None if it has to be compiled."""
         target.refresh()
         kept = read_sealed(self._file(signature, target.codegen()))
+        self.asked = time.perf_counter()
         return None if kept is None else CompileResult._rebuild(target, *pickle.loads(kept))
 
     def save_overload(self, signature: Any, result: CompileResult) -> None:
-        """Keep the code. Raises ``KernelCacheError`` where it cannot be written."""
+        """Keep the code, which was compiled since it was asked for. Raises ``KernelCacheError``."""
+        LOG.info("compiled %s: %.3g s", self.stem.suffix[1:], time.perf_counter() - self.asked)
         write_sealed(self._file(signature, result.codegen), dumps(result._reduce()))
 
     def _file(self, signature: Any, codegen: Any) -> Path:

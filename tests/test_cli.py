@@ -156,13 +156,6 @@ def test_play_refuses_what_is_not_a_log(tmp_path: Path) -> None:
     assert "no such file" in result.stderr
 
 
-@pytest.mark.parametrize("name", ["run", "play", "explain", "modes", "cost", "reproduce"])
-def test_help_fits_80_columns(name: str) -> None:
-    result = runner.invoke(app, [name, "--help"])
-    assert result.exit_code == 0
-    assert max(map(len, result.stdout.splitlines())) <= 80
-
-
 def test_warm_run_imports_no_sympy_and_derives_nothing(tmp_path: Path) -> None:
     code = (
         "import sys\n"
@@ -176,17 +169,3 @@ def test_warm_run_imports_no_sympy_and_derives_nothing(tmp_path: Path) -> None:
     assert runner.invoke(app, ["run", STEP, "--out", str(tmp_path)]).exit_code == 0
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr
-
-
-def test_without_cache_the_answer_is_the_same_and_no_kernel_is_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    still = str(SCENARIOS / "unactuated.toml")
-    kept = runner.invoke(app, ["run", still, "--json", "--out", str(tmp_path)])
-    monkeypatch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path / "kernels"))
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
-    (tmp_path / "temporary").mkdir()
-    result = runner.invoke(app, ["--no-cache", "run", still, "--json", "--out", str(tmp_path)])
-    assert json.loads(result.stdout)["tip"] == json.loads(kept.stdout)["tip"]
-    assert not (tmp_path / "kernels").exists()
-    assert not list((tmp_path / "temporary").iterdir())

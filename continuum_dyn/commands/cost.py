@@ -4,10 +4,11 @@ import csv
 from dataclasses import asdict
 from math import log2
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.show import length, make_folder, plain_table, with_status
 from statics.interruption import held
 
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
 
 
 def cost(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario of a motion.", show_default=False)],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of what is written.")] = Path("logs"),
+    file: ScenarioFile,
+    overrides: Overrides = None,
+    out: Folder = Path("logs"),
 ) -> None:
     """Show what accuracy costs in time.
 
@@ -32,7 +34,7 @@ def cost(
     from continuum_dyn.scenario import load_scenario
     from continuum_dyn.views import plots
 
-    scenario = load_scenario(file)
+    scenario = load_scenario(file, overrides or ())
     make_folder(out)
     measured = with_status(scenario.title, lambda progress: measure(scenario, progress))
     stem = out / f"{file.stem}_cost"

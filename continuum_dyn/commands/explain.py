@@ -1,11 +1,11 @@
 """``continuum-dyn explain``: what a scenario simulates, as equations."""
 
-from pathlib import Path
 from textwrap import fill
 from typing import Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Overrides, ScenarioFile
 from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
@@ -20,7 +20,8 @@ _DISK_LETTERS = {
 
 
 def explain(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario file (TOML).", show_default=False)],
+    file: ScenarioFile,
+    overrides: Overrides = None,
     latex: Annotated[bool, typer.Option("--latex", help="Equations as LaTeX.")] = False,
     measure: Annotated[bool, typer.Option("--measure", help="Measure what can be left out.")] = False,
 ) -> None:
@@ -33,7 +34,7 @@ def explain(
     from continuum_dyn.commands.effects import show_additions, show_modes, show_what_to_leave_out
     from continuum_dyn.scenario import load_scenario
 
-    scenario = load_scenario(file)
+    scenario = load_scenario(file, overrides or ())
     scene = scenario.scene
     typer.echo(f"{scenario.title}\n")
     per_segment = len(scene.coordinates)

@@ -2,10 +2,11 @@
 
 import csv
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.show import make_folder, mode_row, plain_table
 from statics.interruption import held
 
@@ -29,8 +30,9 @@ COLUMNS = (
 
 
 def modes(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario file (TOML).", show_default=False)],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of what is written.")] = Path("logs"),
+    file: ScenarioFile,
+    overrides: Overrides = None,
+    out: Folder = Path("logs"),
 ) -> None:
     """Show the modes of the arm at rest.
 
@@ -42,7 +44,7 @@ def modes(
     from continuum_dyn.scenario import load_scenario
     from continuum_dyn.views import plots
 
-    scenario = load_scenario(file)
+    scenario = load_scenario(file, overrides or ())
     make_folder(out)
     found = modes_at_rest(scenario)
     stem = out / f"{file.stem}_modes"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Folder
 from continuum_dyn.commands.show import make_folder, plain_table
 from statics.interruption import held
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 def reproduce(
     paper: Annotated[str, typer.Argument(metavar="PAPER", help="rone2012", show_default=False)],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of what is written.")] = Path("logs"),
+    out: Folder = Path("logs"),
 ) -> None:
     """Compute a paper's numbers again.
 

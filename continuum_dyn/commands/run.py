@@ -3,16 +3,19 @@
 import json
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Folder, Overrides
 from continuum_dyn.commands.show import length, make_folder
+from continuum_dyn.commands.verbosity import shows_progress
 from statics.errors import InputError
 from statics.interruption import held
+from statics.stages import stage
 
 if TYPE_CHECKING:
     from continuum_dyn.simulation import Run
@@ -30,9 +33,10 @@ BAR_INTERVAL = 0.1
 
 def run(
     files: Annotated[
-        list[Path], typer.Argument(metavar="FILE...", help="Scenario files (TOML).", show_default=False)
+        list[Path], typer.Argument(metavar="FILE", help="Scenario files (TOML).", show_default=False)
     ],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the logs.")] = Path("logs"),
+    overrides: Overrides = None,
+    out: Folder = Path("logs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
 ) -> None:
     """Simulate scenarios and log them.
@@ -41,7 +45,7 @@ def run(
     answer), 1 not answered (no stable equilibrium, geometric limit, diverged, budget exceeded),
     2 bad input, 130 interrupted.
     """
-    scenarios = _load(files)
+    scenarios = _load(files, overrides or ())
     make_folder(out)
     statuses = []
     for path, scenario in scenarios:
@@ -57,14 +61,15 @@ def run(
     raise typer.Exit(max(statuses))
 
 
-def _load(files: list[Path]) -> "list[tuple[Path, Scenario]]":
+def _load(files: list[Path], overrides: Sequence[str]) -> "list[tuple[Path, Scenario]]":
     """All scenarios, checked before the first one runs."""
     from continuum_dyn.scenario import load_scenario
 
     for stem, count in Counter(path.stem for path in files).items():
         if count > 1:
             raise InputError(f"{count} files are named '{stem}'; their logs would overwrite each other.")
-    return [(path, load_scenario(path)) for path in files]
+    with stage("scenarios read"):
+        return [(path, load_scenario(path, overrides)) for path in files]
 
 
 def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[str, Any]:
@@ -76,8 +81,10 @@ def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[st
     with _progress(scenario.title, quiet) as progress:
         result = simulate(scenario, progress)
     log, recording = out / f"{path.stem}.h5", out / f"{path.stem}.rrd"
-    write_log(result, log)
-    rerun_view.save(read_log(log), recording)
+    with stage("log written"):
+        write_log(result, log)
+    with stage("recording written"):
+        rerun_view.save(read_log(log), recording)
     wall_time = time.perf_counter() - started
     return {"run": result, "log": log, "record": _record(path, result, log, recording, wall_time)}
 
@@ -128,7 +135,7 @@ def _progress(title: str, quiet: bool) -> Iterator[Any]:
     from rich.progress import Progress
 
     console = Console(stderr=True)
-    if quiet or not console.is_terminal:
+    if quiet or not (console.is_terminal and shows_progress()):
         yield None
         return
     latest = time.monotonic()

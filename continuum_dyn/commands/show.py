@@ -5,6 +5,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from continuum_dyn.commands.verbosity import shows_progress
 from statics.errors import LogError
 from statics.interruption import held
 
@@ -65,7 +66,7 @@ def with_status(title: str, work: Callable[[Callable[[str], None]], Any]) -> Any
     from rich.console import Console
 
     console = Console(stderr=True)
-    if not console.is_terminal:
+    if not (console.is_terminal and shows_progress()):
         return work(lambda _: None)
     with console.status(title) as status:
         return work(lambda what: status.update(f"{title}: {what}"))

@@ -1,0 +1,21 @@
+"""``continuum-dyn schema``: what editors complete and check scenario files by."""
+
+import json
+
+import typer
+
+
+def schema() -> None:
+    """Print the JSON schema of scenario files.
+
+    Editors complete and check by it. Write it beside a scenario,
+
+        continuum-dyn schema > scenario.schema.json
+
+    and make this the scenario's first line, for Even Better TOML in VS Code and for taplo elsewhere:
+
+        #:schema ./scenario.schema.json
+    """
+    from continuum_dyn.schema import json_schema
+
+    typer.echo(json.dumps(json_schema(), indent=2))

@@ -1,0 +1,250 @@
+"""A log held against the format: every place where it departs from it, in words.
+
+What is in a file decides nothing here but numbers and texts: nothing of it is run, imported or unpickled,
+no other file is opened, and no more memory is taken than the file's size warrants.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import h5py
+import numpy as np
+
+from continuum_dyn.record.log_format import (
+    ATTRIBUTES,
+    COUNTERS,
+    FORMAT,
+    FORMAT_VERSION,
+    GROUPS,
+    OPTIONAL_ATTRIBUTES,
+    Column,
+    Kind,
+)
+from statics.outcome import Outcome
+from statics.quantities import QUANTITIES
+
+SMALL = 16_000_000
+"""Bytes that a log may hold however small its file is."""
+MOST_EXPANSION = 100
+"""Beyond that, bytes that a log may hold for each in its file, which may be compressed."""
+PLAIN_FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
+"""Compression and checksums that HDF5 has built in; others would load libraries."""
+
+_SCALARS = {str: "a text", float: "a finite number", int: "a whole number", bool: "true or false"}
+
+
+def departures(file: h5py.File) -> Iterator[str]:
+    """What cannot be read of a log: names, types, shapes and links of what it must hold.
+
+    The format and its version come first; where they are others nothing else is looked at.
+    """
+    found = list(_other_format(file))
+    if found:
+        yield from found
+        return
+    yield from _wrong_attributes(file, ATTRIBUTES, OPTIONAL_ATTRIBUTES)
+    yield from _wrong_outcome(file)
+    for name in ("tables", "arm"):
+        if file.get(name, getlink=True) is None:
+            yield f"group {name} is missing"
+    yield from _wrong_tables(file)
+    for name, known in GROUPS.items():
+        yield from _wrong_group(file, name, known)
+    yield from _too_large(file)
+
+
+def _other_format(file: h5py.File) -> Iterator[str]:
+    if attribute(file, "format") != FORMAT:
+        yield "an HDF5 file, but not a log of continuum-dyn"
+    elif attribute(file, "format_version") != FORMAT_VERSION:
+        read = attribute(file, "format_version")
+        yield f"log format {str(read)[:40]}; this program reads format {FORMAT_VERSION}"
+
+
+def attribute(place: h5py.Group | h5py.Dataset, name: str) -> Any:
+    """A text, a number, a truth value; None where there is none of that name, or nothing of that kind."""
+    if name not in place.attrs:
+        return None
+    kind = place.attrs.get_id(name)
+    if kind.shape != () or h5py.check_ref_dtype(kind.dtype) or kind.get_storage_size() > SMALL:
+        return None
+    value = place.attrs[name]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return value.decode() if isinstance(value, bytes) else value
+
+
+def _is(value: Any, kind: type) -> bool:
+    if kind is float:
+        return type(value) in (float, int) and bool(np.isfinite(value))
+    return type(value) is kind
+
+
+def _wrong_attributes(
+    place: h5py.Group, needed: Mapping[str, type], optional: Mapping[str, type]
+) -> Iterator[str]:
+    for name, kind in {**needed, **optional}.items():
+        value = attribute(place, name)
+        if name not in place.attrs:
+            if name in needed:
+                yield f"attribute {name} is missing"
+        elif not _is(value, kind):
+            yield f"attribute {name}: {_SCALARS[kind]} is expected; read {_short(place.attrs.get_id(name))}"
+
+
+def _short(attribute_id: h5py.h5a.AttrID) -> str:
+    return f"one of type {attribute_id.dtype} and shape {attribute_id.shape}"
+
+
+def _wrong_outcome(file: h5py.File) -> Iterator[str]:
+    outcome = attribute(file, "outcome")
+    if isinstance(outcome, str) and outcome not in set(Outcome):
+        yield f"attribute outcome: read {outcome[:40]!r}. Allowed: {', '.join(Outcome)}"
+
+
+def _wrong_tables(file: h5py.File) -> Iterator[str]:
+    group, wrong = linked(file, "tables", h5py.Group)
+    if wrong:
+        yield wrong
+    for name in group or ():
+        table, wrong = linked(group, name, h5py.Dataset)
+        if wrong:
+            yield wrong
+        elif table is not None and (table.dtype != np.uint8 or table.ndim != 1):
+            yield f"{table.name}: bytes over one dimension are expected; read {_form(table)}"
+        elif table is not None and not isinstance(attribute(table, "file"), str):
+            yield f"{table.name}: its attribute file, the name of the table, is missing"
+
+
+def linked(group: h5py.Group, name: str, kind: type) -> tuple[Any, str]:
+    """What a group holds under a name, and what is wrong with it; None where there is nothing or it is wrong.
+
+    Links that lead elsewhere are not followed.
+    """
+    link = group.get(name, getlink=True)
+    place = f"{group.name.rstrip('/')}/{name}"
+    if link is None:
+        return None, ""
+    if not isinstance(link, h5py.HardLink):
+        return None, f"{place}: a link that leads elsewhere; it is not followed"
+    if group.get(name, getclass=True) is not kind:
+        return None, f"{place}: a {kind.__name__.lower()} is expected"
+    found = group[name]
+    wrong = _stored_elsewhere(found) if kind is h5py.Dataset else ""
+    return (None if wrong else found), wrong
+
+
+def _stored_elsewhere(dataset: h5py.Dataset) -> str:
+    if dataset.is_virtual or dataset.external:
+        return f"{dataset.name}: its values lie in other files; they are not opened"
+    properties = dataset.id.get_create_plist()
+    filters = {properties.get_filter(number)[0] for number in range(properties.get_nfilters())}
+    return (
+        "" if filters <= PLAIN_FILTERS else f"{dataset.name}: packed with a filter that HDF5 has not built in"
+    )
+
+
+def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Iterator[str]:
+    group, wrong = linked(file, name, h5py.Group)
+    if wrong:
+        yield wrong
+    if group is None:
+        return
+    if name == "trajectory":
+        yield from _wrong_attributes(group, {}, dict.fromkeys(COUNTERS, int))
+    datasets = {}
+    for dataset, column in known.items():
+        found, wrong = linked(group, dataset, h5py.Dataset)
+        if found is not None:
+            datasets[dataset] = found
+            wrong = _wrong_type(found, column)
+        elif not wrong and column.required:
+            wrong = f"/{name}/{dataset} is missing"
+        if wrong:
+            yield wrong
+    yield from _wrong_shapes(group, datasets, known)
+
+
+def _wrong_type(dataset: h5py.Dataset, column: Column) -> str:
+    if kind_of(dataset) is column.kind:
+        return ""
+    return f"{dataset.name}: {column.kind} is expected; read {_form(dataset)}"
+
+
+def kind_of(dataset: h5py.Dataset) -> Kind | None:
+    """The type of its values, or None for one that the format does not know."""
+    if h5py.check_string_dtype(dataset.dtype) is not None:
+        return Kind.TEXT
+    kinds = {("f", 8): Kind.FLOAT, ("i", 8): Kind.INTEGER, ("b", 1): Kind.TRUTH}
+    return kinds.get((dataset.dtype.kind, dataset.dtype.itemsize))
+
+
+def _form(dataset: h5py.Dataset) -> str:
+    return f"{str(dataset.dtype)[:40]} of shape {dataset.shape}"
+
+
+def _wrong_shapes(
+    group: h5py.Group, datasets: Mapping[str, h5py.Dataset], known: Mapping[str, Column]
+) -> Iterator[str]:
+    sizes = {name: found.shape[0] for name, found in datasets.items() if found.shape and found.ndim == 1}
+    growing = not attribute(group.file, "complete") and group.name == "/trajectory"
+    for name, found in datasets.items():
+        dimensions = known[name].dimensions
+        missing = [scale for scale in dimensions if scale not in sizes]
+        if missing:
+            yield f"{found.name}: its dimension {missing[0]} is missing, or not one-dimensional"
+            continue
+        expected = tuple(sizes[scale] for scale in dimensions)
+        first = int(growing and dimensions[0] == "time")
+        if (
+            found.shape is None
+            or len(found.shape) != len(expected)
+            or found.shape[first:] != expected[first:]
+        ):
+            yield f"{found.name}: shape {expected} of {dimensions} is expected; read {_form(found)}"
+
+
+def _too_large(file: h5py.File) -> Iterator[str]:
+    """Sizes that are declared, but not there."""
+    allowed = max(SMALL, MOST_EXPANSION * file.id.get_filesize())
+    groups = [linked(file, name, h5py.Group)[0] for name in ("tables", *GROUPS)]
+    declared = 0
+    for group in groups:
+        for name in group or ():
+            found = linked(group, name, h5py.Dataset)[0]
+            if found is not None and found.shape is not None:
+                declared += int(np.prod(found.shape, dtype=object)) * found.dtype.itemsize
+    if declared > allowed:
+        yield f"datasets of {declared:.3g} bytes in a file of {file.id.get_filesize():.3g}: not read"
+
+
+def oddities(file: h5py.File) -> Iterator[str]:
+    """What a log can be read in spite of: units, meanings and scales that are not as the format has them."""
+    for name, known in GROUPS.items():
+        group = linked(file, name, h5py.Group)[0]
+        for dataset in group or ():
+            if dataset not in known:
+                yield f"/{name}/{dataset}: not a name of the format"
+                continue
+            found = linked(group, dataset, h5py.Dataset)[0]
+            if found is not None:
+                yield from _odd(found, dataset, known[dataset])
+    for name in file:
+        if name not in GROUPS and name != "tables":
+            yield f"/{name}: not a name of the format"
+
+
+def _odd(found: h5py.Dataset, name: str, column: Column) -> Iterator[str]:
+    quantity = QUANTITIES[name]
+    for key, expected in (("units", quantity.unit), ("long_name", quantity.meaning)):
+        read = attribute(found, key)
+        if read != expected:
+            yield f"{found.name}: {key} {expected!r} is expected; read {str(read)[:60]!r}"
+    if column.dimensions == (name,):
+        if not found.is_scale:
+            yield f"{found.name}: not made a dimension scale"
+        return
+    for axis, expected in enumerate(column.dimensions):
+        scales = [scale.name.rpartition("/")[2] for scale in found.dims[axis].values()]
+        if scales != [expected]:
+            yield f"{found.name}: the scale of its axis {axis} is to be {expected}; read {scales or 'none'}"

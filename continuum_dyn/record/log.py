@@ -1,0 +1,34 @@
+"""A log in memory."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from statics.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Log:
+    """A log read back: arrays by glossary name; ``trajectory`` is empty where nothing moved.
+
+    ``scenario`` is the text of the scenario's file, ``tables`` those of the CSV files that it names.
+    ``attributes`` are the file's, ``counters`` what the solver counted. A log that is not ``complete`` is
+    still written, or its run was killed.
+    """
+
+    path: Path
+    title: str
+    outcome: Outcome
+    message: str
+    scenario: str
+    tables: Mapping[str, str]
+    attributes: Mapping[str, Any]
+    cables: tuple[str, ...]
+    arm: Mapping[str, Any]
+    trajectory: Mapping[str, np.ndarray]
+    equilibria: Mapping[str, np.ndarray]
+    counters: Mapping[str, int]
+    complete: bool

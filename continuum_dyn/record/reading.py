@@ -1,0 +1,141 @@
+"""Logs read back: refused where they are not what the format says."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from continuum_dyn.record.checking import attribute, departures, kind_of, oddities
+from continuum_dyn.record.datasets import reason
+from continuum_dyn.record.log import Log
+from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES, Kind
+from statics.errors import LogError
+from statics.outcome import Outcome
+
+MAX_SHOWN = 12
+"""Most departures from the format that an error tells of."""
+
+
+def read_log(path: Path) -> Log:
+    """Read a whole log, also one that is still written or was broken off: up to its last whole sample.
+
+    Raises ``LogError`` for a file that is not a log, or of another format version, or whose names, types or
+    shapes are not the format's; it names them.
+    """
+    with opened(path) as file:
+        found = list(departures(file))
+        if found:
+            more = [f"and {len(found) - MAX_SHOWN} more"] if len(found) > MAX_SHOWN else []
+            raise LogError(f"{path}: " + ".\n  ".join([*found[:MAX_SHOWN], *more]) + ".")
+        log = _read(file, path)
+    spoiled = _not_finite(log)
+    if spoiled:
+        raise LogError(f"{path}: {spoiled[0]} holds numbers that are not finite.")
+    return log
+
+
+def validate(path: Path) -> list[str]:
+    """Everything in which a file departs from the format. Raises ``LogError`` for one that is no HDF5."""
+    with opened(path) as file:
+        found = list(departures(file))
+        if found:
+            return found
+        return [
+            *oddities(file),
+            *(f"{name}: numbers that are not finite" for name in _not_finite(_read(file, path))),
+        ]
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[h5py.File]:
+    """The HDF5 file, to read, also while it is written. Raises ``LogError`` for whatever HDF5 cannot read."""
+    try:
+        with _file(path) as file:
+            yield file
+    except LogError:
+        raise
+    except FileNotFoundError as error:
+        raise LogError(f"{path}: no such file.") from error
+    except MemoryError as error:
+        raise LogError(f"{path}: larger than memory.") from error
+    except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError) as error:
+        told = reason(error) if isinstance(error, OSError) else str(error).splitlines()[0][:200]
+        raise LogError(f"{path}: not a log of continuum-dyn that can be read: {told}.") from error
+
+
+def _file(path: Path) -> h5py.File:
+    """One that was never closed opens for readers beside its writer alone."""
+    try:
+        return h5py.File(path, "r", locking=False)
+    except FileNotFoundError:
+        raise
+    except OSError:
+        return h5py.File(path, "r", swmr=True, locking=False)
+
+
+def _read(file: h5py.File, path: Path) -> Log:
+    names = (*ATTRIBUTES, *OPTIONAL_ATTRIBUTES, "format_version")
+    attributes = {name: attribute(file, name) for name in names if name in file.attrs}
+    arm = file["arm"]
+    arrays = {name: _arrays(file, name) for name in GROUPS}
+    numbers = {name: attribute(arm, name) for name in arm.attrs}
+    tables = file["tables"].values()
+    counted = file.get("trajectory")
+    return Log(
+        path=path,
+        title=attributes["title"],
+        outcome=Outcome(attributes["outcome"]),
+        message=attributes["message"],
+        scenario=attributes["scenario"],
+        tables={attribute(table, "file"): table[()].tobytes().decode() for table in tables},
+        attributes=attributes,
+        cables=tuple(arrays["arm"].pop("cable").tolist()),
+        arm={name: value for name, value in numbers.items() if isinstance(value, int | float)}
+        | arrays["arm"],
+        trajectory=_whole_samples(arrays["trajectory"], attributes["complete"]),
+        equilibria=arrays["equilibria"],
+        counters={} if counted is None else _counters(counted),
+        complete=attributes["complete"],
+    )
+
+
+def _counters(trajectory: h5py.Group) -> dict[str, int]:
+    return {name: attribute(trajectory, name) for name in COUNTERS if name in trajectory.attrs}
+
+
+def _arrays(file: h5py.File, name: str) -> dict[str, np.ndarray]:
+    """The datasets of a group that the format knows; the names of cables are those of the arm."""
+    if name not in file:
+        return {}
+    group = file[name]
+    known = [dataset for dataset in GROUPS[name] if dataset in group]
+    return {dataset: _values(group[dataset]) for dataset in known if name == "arm" or dataset != "cable"}
+
+
+def _values(dataset: h5py.Dataset) -> np.ndarray:
+    if kind_of(dataset) is Kind.TEXT:
+        return np.array(
+            [name.decode() if isinstance(name, bytes) else name for name in dataset[()]], dtype=object
+        )
+    return dataset[()].astype(dataset.dtype.newbyteorder("="), copy=False)
+
+
+def _whole_samples(columns: dict[str, np.ndarray], complete: bool) -> dict[str, np.ndarray]:
+    """Those that all columns of a log that is not complete have: some may be a block ahead."""
+    if complete or not columns:
+        return columns
+    along = [name for name in columns if GROUPS["trajectory"][name].dimensions[0] == "time"]
+    rows = min(len(columns[name]) for name in along)
+    return {name: values[:rows] if name in along else values for name, values in columns.items()}
+
+
+def _not_finite(log: Log) -> list[str]:
+    groups = {"trajectory": log.trajectory, "equilibria": log.equilibria, "arm": log.arm}
+    return [
+        f"/{group}/{name}"
+        for group, columns in groups.items()
+        for name, values in columns.items()
+        if np.asarray(values).dtype.kind == "f" and not np.isfinite(values).all()
+    ]

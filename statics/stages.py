@@ -1,0 +1,16 @@
+"""What takes its time, told to whoever listens to the logger ``continuum_dyn``."""
+
+import logging
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+LOG = logging.getLogger("continuum_dyn")
+
+
+@contextmanager
+def stage(name: str) -> Iterator[None]:
+    """Tell how long what is done within took, once it is done."""
+    started = time.perf_counter()
+    yield
+    LOG.info("%s: %.3g s", name, time.perf_counter() - started)
