@@ -10,7 +10,20 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from continuum_dyn.commands import cost, explain, hard, init, modes, play, reproduce, run, schema
+from continuum_dyn.commands import (
+    cost,
+    explain,
+    hard,
+    init,
+    modes,
+    play,
+    ramp,
+    reproduce,
+    resume,
+    run,
+    schema,
+    settle,
+)
 from continuum_dyn.commands.shared_options import (
     Quiet,
     Verbose,
@@ -24,7 +37,10 @@ INTERRUPTED = 130
 
 COMMANDS = (
     ("Simulate and look", run.run),
+    ("Simulate and look", resume.resume),
     ("Simulate and look", play.play),
+    ("Ask a log", settle.settle),
+    ("Ask a log", ramp.ramp),
     ("Understand", explain.explain),
     ("Understand", modes.modes),
     ("Understand", cost.cost),

@@ -1,5 +1,6 @@
 """The scenario of a log, from the log alone: no file beside it is read."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from continuum_dyn.record import Log
@@ -8,8 +9,8 @@ from continuum_dyn.study import Scenario
 from statics.errors import InputError, LogError
 
 
-def logged_scenario(log: Log) -> Scenario:
-    """The scenario that a log answers, of the text and the tables that it carries.
+def logged_scenario(log: Log, overrides: Sequence[str] = ()) -> Scenario:
+    """The scenario that a log answers, of the text and the tables that it carries, with changes to it.
 
     Raises ``LogError`` for a log that carries none, or one that this program does not take.
     """
@@ -22,6 +23,7 @@ def logged_scenario(log: Log) -> Scenario:
         return log.tables[name]
 
     try:
-        return replace(parse(log.scenario, log.path, text_of_table)[0], title=log.title)
+        scenario = parse(log.scenario, log.path, text_of_table, overrides)[0]
     except InputError as error:
         raise LogError(f"the scenario in {error}") from error
+    return scenario if overrides else replace(scenario, title=log.title)

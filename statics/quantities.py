@@ -150,6 +150,26 @@ solve_time           | -     | s      | time that the solving takes
 steps                | -     | 1      | number of accepted integration steps
 segment_evaluations  | -     | 1      | work: one segment's part of an evaluation of the equations
 dissipated_energy    | -     | J      | time integral of the dissipated power since the start
+travel               | -     | m      | way of the tip from where the inputs' last change finds it to its rest
+rise_time            | -     | s      | time from first being at 10 % of the travel to first being at 90 %
+overshoot            | -     | 1      | largest way of the tip beyond its rest, over the travel
+settling_time_5      | -     | s      | time after which the tip stays within 5 % of its travel from its rest
+settling_time_2      | -     | s      | time after which the tip stays within 2 % of its travel from its rest
+settling_time_1      | -     | s      | time after which the tip stays within 1 % of its travel from its rest
+ramp_rate            | -     | N/s    | largest rate of a ramped tension; m/s of a cable, 1/s of a load factor
+tip_lag              | -     | m      | largest distance of the tip from its equilibrium under the same drive
+delay                | -     | s      | time by which the tip is late on its static path
+quasistatic_error    | -     | m      | largest lag with which a ramp still counts as quasistatic
+quasistatic_rate     | -     | N/s    | ramp rate at which the lag comes to that error, if it is proportional
+measured_quasistatic_rate | - | N/s  | ramp rate at which the lag comes to that error, by running it
+hysteresis_area      | -     | J      | work of the cables once around a loop there and back, in motion
+tip_hysteresis       | -     | m      | largest distance of the tip there and back, same drive, in motion
+static_hysteresis_area | -   | J      | work of the cables once around a loop there and back, at rest
+static_tip_hysteresis | -    | m      | largest distance of the tip there and back, same drive, at rest
+ring_down_misfit     | -     | 1      | part of a ring-down that is not the damped sinusoid fitted to it
+mode_frequency       | -     | Hz     | frequency of the mode that is nearest to a ring-down's
+mode_damping_ratio   | -     | 1      | damping ratio of that mode
+static_gap           | -     | m      | distance of the tip at the end from its last equilibrium
 """
 
 QUANTITIES: dict[str, Quantity] = {

@@ -5,6 +5,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,6 +19,9 @@ from statics.interruption import held
 from statics.stages import stage
 
 if TYPE_CHECKING:
+    from continuum_dyn.begun import Begun
+    from continuum_dyn.log_comparison import Comparison
+    from continuum_dyn.record import Log
     from continuum_dyn.simulation import Run
     from continuum_dyn.study import Scenario
     from statics.equilibria import Equilibrium
@@ -31,9 +35,23 @@ BAR_INTERVAL = 0.1
 """Shortest time between two updates of the progress bar, s."""
 
 
+@dataclass(frozen=True)
+class Job:
+    """A scenario to answer: the file it comes of, its log to be; what it goes on with or is held against."""
+
+    source: Path
+    scenario: "Scenario"
+    log: Path
+    begun: "Begun | None" = None
+    earlier: "Log | None" = None
+
+
 def run(
     files: Annotated[
-        list[Path], typer.Argument(metavar="FILE", help="Scenario files (TOML).", show_default=False)
+        list[Path],
+        typer.Argument(
+            metavar="FILE", help="Scenario files (TOML), or logs (.h5) to run again.", show_default=False
+        ),
     ],
     overrides: Overrides = None,
     out: Folder = Path("logs"),
@@ -41,52 +59,75 @@ def run(
 ) -> None:
     """Simulate scenarios and log them.
 
-    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. Exit status: 0 answered ("not settled" is an
-    answer), 1 not answered (no stable equilibrium, geometric limit, diverged, budget exceeded),
+    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. The scenario of a log is run again, into
+    DIR/NAME_again.h5, and both are compared. Exit status: 0 answered ("not settled" is an answer), 1 not
+    answered (no stable equilibrium, geometric limit, diverged, budget exceeded) or not the same as before,
     2 bad input, 130 interrupted.
     """
-    scenarios = _load(files, overrides or ())
+    jobs = _load(files, overrides or (), out)
     make_folder(out)
     statuses = []
-    for path, scenario in scenarios:
-        with held():  # so that what was computed is logged
-            report = _answer(path, scenario, out, quiet=as_json)
-            if as_json:
-                typer.echo(json.dumps(report["record"]))
-            else:
-                _show(report)
-        statuses.append(report["run"].outcome.exit_status)
+    for job in jobs:
+        statuses.append(answer(job, as_json))
         if statuses[-1] > 1:
             break
     raise typer.Exit(max(statuses))
 
 
-def _load(files: list[Path], overrides: Sequence[str]) -> "list[tuple[Path, Scenario]]":
+def _load(files: list[Path], overrides: Sequence[str], out: Path) -> list[Job]:
     """All scenarios, checked before the first one runs."""
-    from continuum_dyn.scenario import load_scenario
-
     for stem, count in Counter(path.stem for path in files).items():
         if count > 1:
             raise InputError(f"{count} files are named '{stem}'; their logs would overwrite each other.")
     with stage("scenarios read"):
-        return [(path, load_scenario(path, overrides)) for path in files]
+        return [_job(path, overrides, out) for path in files]
 
 
-def _answer(path: Path, scenario: "Scenario", out: Path, quiet: bool) -> dict[str, Any]:
-    from continuum_dyn.record import read_log, write_log
+def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
+    from continuum_dyn.logged_scenario import logged_scenario
+    from continuum_dyn.record import read_log
+    from continuum_dyn.scenario import load_scenario
+
+    if path.suffix != ".h5":
+        return Job(path, load_scenario(path, overrides), out / f"{path.stem}.h5")
+    log = read_log(path)
+    return Job(path, logged_scenario(log, overrides), out / f"{path.stem}_again.h5", earlier=log)
+
+
+def answer(job: Job, as_json: bool) -> int:
+    """Answer a scenario, log it and tell of it; the exit status."""
+    with held():  # so that what was computed is logged
+        report = _answer(job, quiet=as_json)
+        if as_json:
+            typer.echo(json.dumps(report["record"]))
+        else:
+            _show(report)
+    comparison = report["comparison"]
+    differs = comparison is not None and not comparison.same
+    return max(report["run"].outcome.exit_status, int(differs))
+
+
+def _answer(job: Job, quiet: bool) -> dict[str, Any]:
+    from continuum_dyn.log_comparison import compare
+    from continuum_dyn.record import StreamedLog, read_log
     from continuum_dyn.simulation import simulate
     from continuum_dyn.views import rerun_view
 
     started = time.perf_counter()
-    with _progress(scenario.title, quiet) as progress:
-        result = simulate(scenario, progress)
-    log, recording = out / f"{path.stem}.h5", out / f"{path.stem}.rrd"
-    with stage("log written"):
-        write_log(result, log)
+    with StreamedLog(job.log) as streamed:
+        with _progress(job.scenario.title, quiet) as progress:
+            result = simulate(job.scenario, progress, sink=streamed, begun=job.begun)
+        with stage("log written"):
+            streamed.finish(result)
+    log, recording = read_log(job.log), job.log.with_suffix(".rrd")
     with stage("recording written"):
-        rerun_view.save(read_log(log), recording)
+        rerun_view.save(log, recording)
     wall_time = time.perf_counter() - started
-    return {"run": result, "log": log, "record": _record(path, result, log, recording, wall_time)}
+    comparison = None if job.earlier is None else compare(job.earlier, log)
+    record = _record(job.source, result, job.log, recording, wall_time)
+    if comparison is not None:
+        record["compared"] = asdict(comparison) | {"same": comparison.same}
+    return {"run": result, "log": job.log, "record": record, "comparison": comparison, "source": job.source}
 
 
 def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: float) -> dict[str, Any]:
@@ -175,6 +216,8 @@ def _show(report: dict[str, Any]) -> None:
     if result.tip_error is not None:
         table.add_row("accuracy", _accuracy(result, result.tip_error))
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
+    if report["comparison"] is not None:
+        table.add_row("compared", _compared(report["comparison"], report["source"]))
     table.add_row("log", f"{report['log']}  (play it: continuum-dyn play {report['log']})")
     console = Console(highlight=False)
     console.print(table)
@@ -182,6 +225,22 @@ def _show(report: dict[str, Any]) -> None:
     if result.trajectory is None and len(points) > 1:
         console.print(_ramp_table(result, points))
     console.print()
+
+
+def _compared(found: "Comparison", earlier: Path) -> str:
+    """Whether the run is the same as the earlier one."""
+    verdict = "the same as" if found.same else "NOT the same as"
+    told = [f"{verdict} {earlier}"]
+    if found.outcomes[0] != found.outcomes[1]:
+        told.append(f"outcome {found.outcomes[1]}, before {found.outcomes[0]}")
+    if found.tip_distance is None:
+        told.append("nothing to hold together")
+    elif found.tip_distance == 0.0:
+        told.append("tips to the last bit")
+    else:
+        apart = f"{length(found.tip_distance)} apart {found.place}"
+        told.append(f"tips at most {apart}, allowed {length(found.allowed)}")
+    return "; ".join(told)
 
 
 def _add_motion(table: Any, result: "Run") -> None:

@@ -21,6 +21,14 @@ def length(value: float) -> str:
     return f"{value / 1e-12:.3g} pm"
 
 
+def energy(value: float) -> str:
+    """An energy (J) in the unit that reads best."""
+    for unit, size in (("J", 1.0), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)):
+        if abs(value) >= 0.999 * size:
+            return f"{value / size:.3g} {unit}"
+    return f"{value / 1e-12:.3g} pJ"
+
+
 def duration(value: float) -> str:
     """A time (s) in the unit that reads best."""
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):

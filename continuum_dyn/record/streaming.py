@@ -99,10 +99,11 @@ class StreamedLog:
         self._file = file
 
     def _append(self, file: h5py.File, block: Trajectory) -> None:
-        for name, values in columns_of(block).items():
-            dataset = file["trajectory"][name]
-            check_finite(file["trajectory"], name, values)
-            self._tails[name] = _append(dataset, values, self.rows, self._tails.get(name))
+        group, columns = file["trajectory"], columns_of(block)
+        for name, values in columns.items():
+            check_finite(group, name, values)
+        for name, values in columns.items():
+            self._tails[name] = _append(group[name], values, self.rows, self._tails.get(name))
         self.rows += block.time.size
 
     def _finish_copy(self, run: Run, trajectory: Trajectory) -> None:

@@ -1,0 +1,132 @@
+"""``continuum-dyn ramp``: whether a ramp is quasistatic, and the loop that it goes through."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.show import duration, energy, length, make_folder, plain_table, with_status
+from statics.errors import InputError
+from statics.interruption import held
+
+if TYPE_CHECKING:
+    from continuum_dyn.ramp_answers import RampAnswers
+
+
+def ramp(
+    log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a ramp.", show_default=False)],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the picture.")] = Path("logs"),
+    error: Annotated[
+        float, typer.Option(metavar="LENGTH", help="Lag (m) up to which a ramp counts as quasistatic.")
+    ] = 1e-4,
+    measure: Annotated[
+        bool, typer.Option("--measure", help="Run the scenario at several rates about the one in question.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    assertions: Annotated[
+        list[str] | None, typer.Option("--assert", metavar="TEXT", help=HELP.format("tip_lag < 1e-5"))
+    ] = None,
+) -> None:
+    """Show how a ramp keeps to its static path.
+
+    Of a motion with static_path = true: how far its tip lags behind the equilibria of the same tensions, and
+    up to which rate it would stay within an error. Of a motion or a ramp of equilibria that goes there and
+    back: the loop between the two ways. Writes DIR/NAME_ramp.png. Exit status: 1 if an assertion does not
+    hold.
+    """
+    from continuum_dyn.logged_scenario import logged_scenario
+    from continuum_dyn.ramp_answers import FIGURES, ramp_answers
+    from continuum_dyn.ramp_rates import measured
+    from continuum_dyn.record import read_log
+    from continuum_dyn.views import ramp_plot
+
+    asked = parsed(assertions or [], FIGURES)
+    if not 0.0 < error < float("inf"):
+        raise InputError(f"--error takes a length above 0, in m; read: {error:g}.")
+    read = read_log(log)
+    found = ramp_answers(read, error)
+    make_folder(out)
+    if measure:
+        scenario, before = logged_scenario(read), found
+        found = with_status(read.title, lambda progress: measured(before, scenario, progress))
+    picture = out / f"{log.stem}_ramp.png"
+    with held():
+        ramp_plot.ramp(read.title, found).savefig(picture, dpi=160)
+    verdicts = judged(asked, found.figures)
+    if as_json:
+        asserted = [verdict.record for verdict in verdicts]
+        named = {"log": str(log), "title": read.title} | _record(found)
+        typer.echo(json.dumps(named | {"assertions": asserted, "picture": str(picture)}))
+    else:
+        _show(read.title, found, verdicts)
+        typer.echo(f"written: {picture}")
+    leave(verdicts)
+
+
+def _record(found: "RampAnswers") -> dict[str, Any]:
+    """What ``--json`` prints: every figure, each way's lag, and those at other rates."""
+    drive = {"quantity": found.drive.quantity, "of": found.drive.of, "rate_unit": found.drive.rate_unit}
+    ways, runs = [vars(way) for way in found.lags], [run._asdict() for run in found.measured]
+    return {"drive": drive, **found.figures, "missing": found.missing, "ways": ways, "measured": runs}
+
+
+def _show(title: str, found: "RampAnswers", verdicts: list[Verdict]) -> None:
+    from rich.console import Console
+    from rich.markup import escape
+
+    console = Console(highlight=False)
+    console.print(escape(title))
+    console.print(_figure_table(found))
+    if found.lags:
+        console.print(_lag_table(found))
+    if verdicts:
+        console.print(verdict_table(verdicts, found.missing))
+    console.print()
+
+
+def _figure_table(found: "RampAnswers") -> Any:
+    table = plain_table("", "", "", "")
+    table.show_header, table.columns[2].justify, table.columns[2].overflow = False, "left", "fold"
+    figures, unit = found.figures, found.drive.rate_unit
+    drive = f"{found.drive.quantity.replace('_', ' ')} of '{found.drive.of}'"
+
+    def row(words: str, name: str, told: Any, explained: str) -> None:
+        value = figures[name]
+        if value is not None:
+            table.add_row(words, told(value), explained)
+        elif words and found.missing[name]:
+            table.add_row(words, "none", found.missing[name])
+
+    def rate(value: float) -> str:
+        return f"{value:.3g} {unit}"
+
+    if found.motion is not None:
+        row("rate", "ramp_rate", rate, f"largest, of the {drive}")
+        row("lag", "tip_lag", length, "largest, of the tip, from its static path")
+        row("", "delay", duration, "as a delay on that path")
+        within = f"for a lag of {length(figures['quasistatic_error'] or 0.0)}"
+        row("quasistatic", "quasistatic_rate", rate, f"{within}, if in proportion to the rate")
+        row("", "measured_quasistatic_rate", rate, f"{within}, by runs at several rates")
+        row("hysteresis", "hysteresis_area", energy, "work once around the loop, in motion")
+        row("", "tip_hysteresis", length, "of the tip there and back, in motion")
+    row(
+        "hysteresis" if found.motion is None else "",
+        "static_hysteresis_area",
+        energy,
+        "work once around it, at rest",
+    )
+    row("", "static_tip_hysteresis", length, "of the tip there and back, at rest")
+    return table
+
+
+def _lag_table(found: "RampAnswers") -> Any:
+    """The lag on each way of the drive, and at each rate that was run."""
+    table = plain_table("\nLag against rate", "", f"rate ({found.drive.rate_unit})", "largest lag", "delay")
+    for way in found.lags:
+        late = "" if way.delay is None else duration(way.delay)
+        table.add_row(f"{way.start:g} to {way.end:g} s", f"{way.ramp_rate:.3g}", length(way.tip_lag), late)
+    for run in found.measured:
+        table.add_row("run at", f"{run.ramp_rate:.3g}", length(run.tip_lag), "")
+    return table

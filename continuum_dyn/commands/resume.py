@@ -1,0 +1,38 @@
+"""``continuum-dyn resume``: go on with a run that was broken off."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from continuum_dyn.commands.run import Job, answer
+from continuum_dyn.record.log_format import UNFINISHED
+
+
+def resume(
+    log: Annotated[
+        Path,
+        typer.Argument(
+            metavar="LOG",
+            help="A log (.h5) that ended early, or what a killed run left of one (.h5.part).",
+            show_default=False,
+        ),
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as a JSON object.")] = False,
+) -> None:
+    """Go on with a run that was interrupted, killed, or stopped by its budget.
+
+    The log alone is needed. Its motion goes on from the last sample, under a budget as at first, and the
+    log of the whole takes its place. A search for equilibria, or for an accuracy, begins anew. Exit status:
+    as of run.
+    """
+    from continuum_dyn.logged_motion import logged_motion
+    from continuum_dyn.logged_scenario import logged_scenario
+    from continuum_dyn.record import read_log
+
+    unfinished = log.with_name(log.name + UNFINISHED)
+    found = read_log(unfinished if not log.exists() and unfinished.exists() else log)
+    scenario = logged_scenario(found)
+    whole = found.path.with_name(found.path.name.removesuffix(UNFINISHED))
+    job = Job(found.path, scenario, whole, begun=logged_motion(found, scenario))
+    raise typer.Exit(answer(job, as_json))

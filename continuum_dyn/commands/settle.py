@@ -1,0 +1,111 @@
+"""``continuum-dyn settle``: how a motion comes to rest."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.show import duration, length, make_folder, plain_table
+from statics.interruption import held
+
+if TYPE_CHECKING:
+    from continuum_dyn.settling_answers import Settling
+
+CLEAR_MISFIT = 0.05
+"""Misfit from which on a ring-down is told to be more than one damped sinusoid."""
+
+
+def settle(
+    log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a motion.", show_default=False)],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the picture.")] = Path("logs"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    assertions: Annotated[
+        list[str] | None,
+        typer.Option("--assert", metavar="TEXT", help=HELP.format("settling_time_2 < 0.8")),
+    ] = None,
+) -> None:
+    """Show how the motion of a log settles.
+
+    After the last change of what drives the arm, along the straight way of its tip to its last equilibrium:
+    rise time, overshoot, settling times; frequency and damping ratio of the ring-down, beside those of the
+    linear mode at that equilibrium; and the gap that is left. Writes DIR/NAME_settle.png. Exit status:
+    1 if an assertion does not hold.
+    """
+    from continuum_dyn.record import read_log
+    from continuum_dyn.settling_answers import FIGURES, settling
+    from continuum_dyn.views import settling_plot
+
+    asked = parsed(assertions or [], FIGURES)
+    read = read_log(log)
+    found = settling(read)
+    make_folder(out)
+    picture = out / f"{log.stem}_settle.png"
+    with held():
+        settling_plot.settling(read.title, found).savefig(picture, dpi=160)
+    verdicts = judged(asked, found.figures)
+    if as_json:
+        record = {"log": str(log), "title": read.title, **found.figures, "missing": found.missing}
+        asserted = [verdict.record for verdict in verdicts]
+        typer.echo(json.dumps(record | {"assertions": asserted, "picture": str(picture)}))
+    else:
+        _show(read.title, found, verdicts)
+        typer.echo(f"written: {picture}")
+    leave(verdicts)
+
+
+def _show(title: str, found: "Settling", verdicts: list[Verdict]) -> None:
+    from rich.console import Console
+    from rich.markup import escape
+
+    console = Console(highlight=False)
+    console.print(escape(title))
+    console.print(_step_table(found))
+    console.print(_ring_down_table(found))
+    for why in dict.fromkeys(found.missing[name] for name in found.missing):
+        names = [name.replace("_", " ") for name, reason in found.missing.items() if reason == why]
+        console.print(f"no {', '.join(names)}: {why}.")
+    if (found.figures["ring_down_misfit"] or 0.0) > CLEAR_MISFIT:
+        console.print("It does not die away as one mode does: its damping changes as it gets smaller, or")
+        console.print("several modes swing.")
+    if verdicts:
+        console.print(verdict_table(verdicts, found.missing))
+    console.print()
+
+
+def _step_table(found: "Settling") -> Any:
+    table = plain_table("", "", "", "")
+    table.show_header, table.columns[2].justify = False, "left"
+    figures, begin, end = found.figures, found.change.begin, found.change.end
+    changes = f"{begin:g} s" if begin == end else f"{begin:g} to {end:g} s"
+    table.add_row("travel of the tip", length(found.travel), f"inputs last change at {changes}")
+    table.add_row("rise time", _time(figures["rise_time"]), "from 10 to 90 % of the travel")
+    table.add_row("overshoot", _percent(figures["overshoot"]), "of the travel")
+    for percent in (5, 2, 1):
+        stays = _time(figures[f"settling_time_{percent}"])
+        table.add_row("settling time" if percent == 5 else "", stays, f"to within {percent} % of the travel")
+    gap = figures["static_gap"]
+    table.add_row("gap to static", "none" if gap is None else length(gap), "from the final equilibrium")
+    return table
+
+
+def _percent(part: float | None) -> str:
+    return "none" if part is None else f"{round(100 * part, 4):.3g} %"
+
+
+def _time(value: float | None) -> str:
+    return "none" if value is None else duration(value)
+
+
+def _ring_down_table(found: "Settling") -> Any:
+    table = plain_table("\nRing-down", "", "fitted", "linear mode", "fitted over mode")
+    for name, unit in (("frequency", " Hz"), ("damping_ratio", "")):
+        fitted, mode = found.figures[name], found.figures[f"mode_{name}"]
+        cells = ["none" if value is None else f"{value:.5g}{unit}" for value in (fitted, mode)]
+        apart = "" if fitted is None or not mode else f"{100 * (fitted / mode - 1):+.3g} %"
+        table.add_row(name.replace("_", " "), *cells, apart)
+    misfit = found.figures["ring_down_misfit"]
+    if misfit is not None:
+        table.add_row("misfit", f"{100 * misfit:.2g} %", "", "")
+    return table

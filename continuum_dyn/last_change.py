@@ -1,0 +1,55 @@
+"""When what drives a motion changes for the last time."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from continuum_dyn.profiles import SAME, Span, spans
+from continuum_dyn.study import Scenario
+from statics.errors import InputError
+
+
+class LastChange(NamedTuple):
+    """Times (s) at which the inputs begin to change for the last time, and from which on they stay.
+
+    The same for a step. From ``end`` on the motion is free.
+    """
+
+    begin: float
+    end: float
+
+
+def last_change(scenario: Scenario, until: float) -> LastChange:
+    """The last change of tensions, load factors and the base's pose in a motion up to that time (s).
+
+    Raises ``InputError`` if they never change, or still do at that time.
+    """
+    drives = (*scenario.tension, *scenario.load_factors, *scenario.base_motion)
+    profiles = [profile for profile in drives if not isinstance(profile, tuple)]
+    stretches = spans(profiles, until)
+    before = np.array([profile.initial for profile in profiles])
+    changes = list(_changes(before, stretches))
+    if not changes:
+        raise InputError(f"nothing that drives this motion changes before {until:g} s.")
+    if changes[-1].end >= until:
+        raise InputError(
+            f"what drives this motion still changes when it ends, at {until:g} s: there is nothing "
+            "to settle to."
+        )
+    return changes[-1]
+
+
+def _changes(before: np.ndarray, stretches: list[Span]) -> list[LastChange]:
+    """Jumps, and stretches of continuous change."""
+    found: list[LastChange] = []
+    goes_on = False
+    for span in stretches:
+        first, last = span.inputs(np.array([span.start, span.end]))
+        if np.any(np.abs(first - before) > SAME * (np.abs(first) + np.abs(before))):
+            found.append(LastChange(span.start, span.start))
+            goes_on = False
+        if changing := bool(span.pieces[:, 2:4].any()):
+            begin = found.pop().begin if goes_on else span.start
+            found.append(LastChange(begin, span.end))
+        goes_on, before = changing, last
+    return found

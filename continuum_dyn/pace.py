@@ -1,0 +1,39 @@
+"""The same scenario driven faster or slower."""
+
+from dataclasses import replace
+from typing import Any
+
+from continuum_dyn.profiles import Constant, Profile, Ramp, Sine, SmoothRamp, Step, Table
+from continuum_dyn.study import MotionStudy, Scenario
+from statics.errors import InputError
+
+
+def at_pace(scenario: Scenario, factor: float) -> Scenario:
+    """The scenario with all that drives it, and its duration, that many times as fast.
+
+    Raises ``InputError`` for a study without motion.
+    """
+    if not isinstance(scenario.study, MotionStudy):
+        raise InputError(f'only a motion has a pace; this is "{scenario.study.kind}".')
+    return replace(
+        scenario,
+        tension=tuple(_faster(profile, factor) for profile in scenario.tension),
+        load_factors=tuple(_faster(profile, factor) for profile in scenario.load_factors),
+        base_motion=tuple(_faster(profile, factor) for profile in scenario.base_motion),
+        study=replace(scenario.study, duration=scenario.study.duration / factor),
+    )
+
+
+def _faster(profile: Any, factor: float) -> Profile:
+    match profile:
+        case Constant():
+            return profile
+        case Step():
+            return replace(profile, at=profile.at / factor)
+        case Ramp() | SmoothRamp():
+            return replace(profile, start=profile.start / factor, end=profile.end / factor)
+        case Sine():
+            return replace(profile, frequency=profile.frequency * factor)
+        case Table():
+            return replace(profile, time=tuple(t / factor for t in profile.time))
+    raise TypeError(f"{profile!r} is no profile")

@@ -1,0 +1,206 @@
+"""What a ramp's log says: how far the motion lags behind the static path, and the loop there and back."""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from continuum_dyn.lag import delay, gap
+from continuum_dyn.loops import Loop, widest_gap, widest_loop, work_around
+from continuum_dyn.record import Log
+from continuum_dyn.turnings import monotonic_ways
+from statics.errors import InputError
+
+FIGURES = (
+    *("ramp_rate", "tip_lag", "delay", "quasistatic_error", "quasistatic_rate", "measured_quasistatic_rate"),
+    *("hysteresis_area", "tip_hysteresis", "static_hysteresis_area", "static_tip_hysteresis"),
+)
+"""Names of what is found, in the glossary."""
+LEAST_WAY = 1e-2
+"""Part of a drive's range below which going up or down is no way of a ramp."""
+JUMP = 0.5
+"""Part of a way that is passed from one sample to the next where the drive jumps."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What is ramped: a tension, a cable drawn in, or a load factor, at each row; ``of`` says whose."""
+
+    quantity: str
+    of: str
+    values: np.ndarray
+
+    @property
+    def rate_unit(self) -> str:
+        """Unit of its rate."""
+        return {"tension": "N/s", "cable_displacement": "m/s", "load_factor": "1/s"}[self.quantity]
+
+
+@dataclass(frozen=True)
+class Path:
+    """The tip along a ramp, shape (rows, 2), m, and what the cables do, shape (rows, cables), N and m."""
+
+    tip: np.ndarray
+    tension: np.ndarray
+    cable_displacement: np.ndarray
+
+
+@dataclass(frozen=True)
+class WayLag:
+    """The lag on one way of the drive: its times and largest rate, the largest lag (m), the delay (s)."""
+
+    start: float
+    end: float
+    ramp_rate: float
+    tip_lag: float
+    delay: float | None
+
+
+class RateLag(NamedTuple):
+    """A largest rate of the drive, in its unit per s, and the largest lag (m) of a motion at that rate."""
+
+    ramp_rate: float
+    tip_lag: float
+
+
+@dataclass(frozen=True)
+class RampAnswers:
+    """What a ramp's log says.
+
+    ``static`` is the path of equilibria; ``motion`` the path of the motion at the same rows, with its
+    ``time`` (s), its tip's ``gaps`` (m) from the static one and its ``lags`` on each way, None and empty
+    where nothing moves. ``loop`` is the widest one, there and back. Of ``figures``, by glossary name, in SI
+    units, those that are None have their reason in ``missing``. ``measured`` is what other rates show.
+    """
+
+    drive: Drive
+    static: Path
+    motion: Path | None
+    time: np.ndarray | None
+    gaps: np.ndarray | None
+    lags: tuple[WayLag, ...]
+    loop: Loop | None
+    figures: dict[str, float | None]
+    missing: dict[str, str]
+    measured: tuple[RateLag, ...] = ()
+
+
+def ramp_answers(log: Log, error: float) -> RampAnswers:
+    """What the log of a ramp says: of equilibria, or of a motion with its static path.
+
+    ``quasistatic_rate`` is the rate at which the lag comes to ``error`` (m), if it is proportional to the
+    rate. Raises ``InputError`` for a log without a static path, and where nothing is ramped.
+    """
+    rows = _rows(log)
+    drive, static = _drive(log, rows), _path(log.equilibria, rows)
+    ways = monotonic_ways(drive.values, LEAST_WAY * float(np.ptp(drive.values)))
+    motion = time = gaps = None
+    lags: tuple[WayLag, ...] = ()
+    if log.trajectory:
+        samples = log.equilibria["point"][rows] - 1
+        motion, time = _path(log.trajectory, samples), log.trajectory["time"][samples]
+        gaps = gap(motion.tip, static.tip)
+        lags = tuple(_lag(drive, static, motion, time, way) for way in ways)
+    loop = None if _unstable(log, rows) else widest_loop(drive.values, ways)
+    figures = dict.fromkeys(FIGURES) | {"quasistatic_error": error}
+    figures |= _lag_figures(lags, gaps, time, static, motion, error) | _loop_figures(
+        drive, loop, static, motion
+    )
+    missing = {name: _reason(name, log, loop, rows) for name, value in figures.items() if value is None}
+    return RampAnswers(drive, static, motion, time, gaps, lags, loop, figures, missing)
+
+
+def _rows(log: Log) -> np.ndarray:
+    """Rows of the equilibria that were found, one for each point: without those that a search left."""
+    points = log.equilibria.get("point", np.empty(0, dtype=int))
+    rows = np.flatnonzero(np.append(np.diff(points) != 0, True)) if points.size else points
+    if log.trajectory and len(rows) <= 2:
+        raise InputError(
+            f"{log.path}: no static path in this log. Add static_path = true to [study], and run."
+        )
+    if len(rows) < 2:
+        raise InputError(f"{log.path}: {len(rows)} equilibria; a ramp has several.")
+    return rows
+
+
+def _drive(log: Log, rows: np.ndarray) -> Drive:
+    """The first cable that is driven by its length and drawn in, whose tension changes, or the first load."""
+    for number, name in enumerate(log.cables):
+        by_length = log.arm["cable_stiffness"][number] > 0.0
+        quantity = "cable_displacement" if by_length else "tension"
+        values = log.equilibria[quantity][rows, number]
+        if np.ptp(values) > 0.0:
+            return Drive(quantity, name, values)
+    factors = log.equilibria.get("load_factor", np.empty((rows[-1] + 1, 0)))[rows]
+    for number, values in enumerate(factors.T, start=1):
+        if np.ptp(values) > 0.0:
+            return Drive("load_factor", f"load {number}", values)
+    raise InputError(f"{log.path}: no tension and no load factor changes in this log; nothing is ramped.")
+
+
+def _path(columns: Any, rows: np.ndarray) -> Path:
+    tip = np.column_stack([columns["disk_x"][rows, -1], columns["disk_y"][rows, -1]])
+    return Path(tip, columns["tension"][rows], columns["cable_displacement"][rows])
+
+
+def _lag(drive: Drive, static: Path, motion: Path, time: np.ndarray, way: slice) -> WayLag:
+    values, at = drive.values[way], time[way]
+    steps = np.abs(np.diff(values))
+    if steps.max() > JUMP * np.ptp(values):
+        raise InputError(
+            f"the {drive.quantity.replace('_', ' ')} of {drive.of} jumps at {at[np.argmax(steps)]:g} s; a "
+            "ramp changes it gradually. Ask settle about steps."
+        )
+    rate = float(np.max(steps / np.diff(at)))
+    late = delay(at, motion.tip[way], static.tip[way])
+    lag = float(gap(motion.tip[way], static.tip[way]).max())
+    return WayLag(float(at[0]), float(at[-1]), rate, lag, late)
+
+
+def _lag_figures(
+    lags: tuple[WayLag, ...],
+    gaps: np.ndarray | None,
+    time: np.ndarray | None,
+    static: Path,
+    motion: Path | None,
+    error: float,
+) -> dict[str, float | None]:
+    """Those of the motion against its static path."""
+    if motion is None or gaps is None or time is None:
+        return {}
+    rate, lag = max(way.ramp_rate for way in lags), float(gaps.max())
+    late = delay(time, motion.tip, static.tip)
+    within = error * rate / lag if lag > 0.0 else None
+    return {"ramp_rate": rate, "tip_lag": lag, "delay": late, "quasistatic_rate": within}
+
+
+def _loop_figures(
+    drive: Drive, loop: Loop | None, static: Path, motion: Path | None
+) -> dict[str, float | None]:
+    """Those of the loop, of the motion and of the static path."""
+    figures: dict[str, float | None] = {}
+    for path, kind in ((motion, ""), (static, "static_")):
+        if loop is not None and path is not None:
+            cables = zip(path.tension.T, path.cable_displacement.T, strict=True)
+            area = sum(work_around(loop, drive.values, *columns) for columns in cables)
+            figures[f"{kind}hysteresis_area"] = None if drive.quantity == "load_factor" else area
+            figures[f"{kind}tip_hysteresis"] = widest_gap(loop, drive.values, path.tip)
+    return figures
+
+
+def _unstable(log: Log, rows: np.ndarray) -> bool:
+    return not log.equilibria.get("stable", np.ones(rows[-1] + 1))[rows].all()
+
+
+def _reason(name: str, log: Log, loop: Loop | None, rows: np.ndarray) -> str:
+    if name == "measured_quasistatic_rate":
+        return "not asked for; --measure runs the scenario at other rates"
+    if not log.trajectory and not name.startswith("static"):
+        return "nothing moves in this log; it is a ramp of equilibria"
+    if name == "quasistatic_rate":
+        return "the motion is on its static path"
+    if _unstable(log, rows):
+        return "the path passes through unstable equilibria; it is no way there and back"
+    if loop is None:
+        return "the drive does not come back"
+    return "the work of loads is not in the log"

@@ -1,0 +1,48 @@
+"""The lag of a ramp at other rates, by running it."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from continuum_dyn.lag import gap, rate_within
+from continuum_dyn.pace import at_pace
+from continuum_dyn.ramp_answers import RampAnswers, RateLag
+from continuum_dyn.simulation import simulate
+from continuum_dyn.study import MotionStudy, Scenario
+from statics.errors import InputError
+
+PACES = (0.25, 0.5, 1.0, 2.0, 4.0)
+"""Times the rate at which a lag that is proportional to the rate would come to the error."""
+
+
+def measured(
+    found: RampAnswers, scenario: Scenario, progress: Callable[[str], None] = lambda _: None
+) -> RampAnswers:
+    """What a ramp's log says, with its scenario's lags about ``quasistatic_rate``, and that rate by them.
+
+    Raises ``InputError`` for a log without motion, and where a run does not come to its end.
+    """
+    own, about, error = (found.figures[n] for n in ("ramp_rate", "quasistatic_rate", "quasistatic_error"))
+    if own is None or about is None or error is None:
+        raise InputError(f"there is no rate to measure at: {found.missing['quasistatic_rate']}.")
+    lags = tuple(_lag_at(scenario, own, pace * about, progress) for pace in PACES)
+    rate = rate_within(error, *np.array(lags).T)
+    missing = {name: why for name, why in found.missing.items() if name != "measured_quasistatic_rate"}
+    if rate is None:
+        missing["measured_quasistatic_rate"] = "at the rates that were run the lag does not pass the error"
+    figures = found.figures | {"measured_quasistatic_rate": rate}
+    return replace(found, measured=lags, figures=figures, missing=missing)
+
+
+def _lag_at(scenario: Scenario, own: float, rate: float, progress: Callable[[str], None]) -> RateLag:
+    progress(f"at {rate:.3g} per s")
+    faster = at_pace(scenario, rate / own)
+    assert isinstance(faster.study, MotionStudy)
+    run = simulate(replace(faster, study=replace(faster.study, static_path=True)))
+    tips, path = run.tips, run.static_path
+    if tips is None or len(path) != len(tips) or not all(point.found for point in path):
+        raise InputError(
+            f"run at {rate / own:.3g} times its pace the ramp ends: {run.outcome} {run.message}."
+        )
+    return RateLag(rate, float(gap(tips, np.array([point.tip[:2] for point in path])).max()))

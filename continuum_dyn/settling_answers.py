@@ -1,0 +1,187 @@
+"""How the motion of a log settles: its step figures, its ring-down, and the modes it should swing in."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.last_change import LastChange, last_change
+from continuum_dyn.logged_scenario import logged_scenario
+from continuum_dyn.modes import FEW_COORDINATES, Mode, check, modes, still
+from continuum_dyn.profiles import spans
+from continuum_dyn.record import Log
+from continuum_dyn.ring_down import FEWEST_SAMPLES, RingDown, fit_ring_down
+from continuum_dyn.step_figures import overshoot, rise_time, settling_time
+from continuum_dyn.study import MotionStudy, Scenario
+from statics import codegen
+from statics.errors import InputError
+
+BANDS = {"settling_time_5": 0.05, "settling_time_2": 0.02, "settling_time_1": 0.01}
+"""Parts of the tip's travel within which it has settled, by the name of the time that this takes."""
+STEP_FIGURES = ("rise_time", "overshoot", *BANDS)
+FIGURES = (
+    *("travel", *STEP_FIGURES, "frequency", "damping_ratio", "ring_down_misfit"),
+    *("mode_frequency", "mode_damping_ratio", "static_gap"),
+)
+"""Names of what is found, in the glossary."""
+NO_TRAVEL = 1e-9
+"""Part of the arm's length below which its tip does not travel."""
+
+
+@dataclass(frozen=True)
+class Settling:
+    """How a tip comes to rest after the last change of what drives the arm.
+
+    ``along`` is the tip's position (m) at each ``time`` (s), along the straight way from where it was when
+    this change began (0) to its last equilibrium (``travel``); what it does across that way is left out. Of
+    ``figures``, by glossary name and in SI units, those that are None have their reason in ``missing``.
+    """
+
+    time: np.ndarray
+    along: np.ndarray
+    travel: float
+    change: LastChange
+    ring_down: RingDown | None
+    mode: Mode | None
+    figures: dict[str, float | None]
+    missing: dict[str, str]
+
+
+def settling(log: Log) -> Settling:
+    """How the motion of a log settles.
+
+    Times count from the beginning of the last change of the inputs; overshoot and bands are parts of the
+    travel. Frequency and damping ratio are fitted to what follows its end, and belong beside those of the
+    mode of the last equilibrium whose frequency is nearest. Raises ``InputError`` for a log without a motion
+    to an equilibrium, or whose tip does not travel.
+    """
+    scenario, time = logged_scenario(log), _motion_times(log)
+    change = last_change(scenario, float(time[-1]))
+    along, travel = _along(log, change.begin)
+    missing: dict[str, str] = {}
+    found = _or_why(missing, "mode", lambda: _modes_at_the_end(log, scenario)) or ()
+    ring_down = _or_why(missing, "ring_down", lambda: _ring_down(time, along, change, found))
+    mode = _nearest(found, ring_down)
+    steps = _or_why(missing, "step", lambda: _step_figures(time, along / travel, change, found, ring_down))
+    figures = {
+        "travel": travel,
+        **(steps or dict.fromkeys(STEP_FIGURES)),
+        "frequency": getattr(ring_down, "frequency", None),
+        "damping_ratio": getattr(ring_down, "damping_ratio", None),
+        "ring_down_misfit": getattr(ring_down, "misfit", None),
+        "mode_frequency": getattr(mode, "frequency", None),
+        "mode_damping_ratio": getattr(mode, "damping_ratio", None),
+        "static_gap": _number(log.attributes.get("static_gap")),
+    }
+    reasons = {name: _reason(name, missing) for name, value in figures.items() if value is None}
+    return Settling(time, along, travel, change, ring_down, mode, figures, reasons)
+
+
+def _motion_times(log: Log) -> np.ndarray:
+    if not log.trajectory or len(log.trajectory["time"]) < 2:
+        raise InputError(f"{log.path}: nothing moves in this log; settling is asked of motions.")
+    if "time" not in log.equilibria or len(log.equilibria["time"]) < 2:
+        raise InputError(f"{log.path}: the last equilibrium was not found; there is nothing to settle to.")
+    return log.trajectory["time"]
+
+
+def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
+    """Position of the tip along its travel at all samples, and the travel, m."""
+    motion, rests = log.trajectory, log.equilibria
+    tip = np.column_stack([motion["disk_x"][:, -1], motion["disk_y"][:, -1]])
+    start = CubicSpline(motion["time"], tip)(begin)
+    way = np.array([rests["disk_x"][-1, -1], rests["disk_y"][-1, -1]]) - start
+    travel = float(np.hypot(*way))
+    if travel < NO_TRAVEL * log.arm["disks"] * log.arm["disk_spacing"]:
+        raise InputError(f"{log.path}: the tip is where it will rest from the start; it does not travel.")
+    return (tip - start) @ way / travel, travel
+
+
+def _or_why(missing: dict[str, str], name: str, found: Callable[[], Any]) -> Any:
+    """What is found, or None with the reason kept under that name."""
+    try:
+        return found()
+    except InputError as error:
+        missing[name] = str(error)
+        return None
+
+
+def _reason(name: str, missing: dict[str, str]) -> str:
+    if name in STEP_FIGURES and "step" in missing:
+        return missing["step"].rstrip(".")
+    if name in BANDS:
+        return "it does not stay within the band for half a period before the log ends"
+    if name == "rise_time":
+        return "it does not come to 90 % of its travel"
+    if name == "static_gap":
+        return "the motion stopped early"
+    return missing.get("mode" if name.startswith("mode") else "ring_down", "").rstrip(".")
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
+    """All modes about the last equilibrium of the log. Raises ``InputError`` as ``modes.check``."""
+    if scenario.chooses_mesh:
+        assert scenario.accuracy is not None
+        scenario = scenario.with_mesh(int(log.arm["subsegments"]), scenario.accuracy.tip)
+    check(scenario.scene)
+    few = scenario.scene.arm.segments * len(scenario.scene.coordinates) <= FEW_COORDINATES
+    dynamics = Dynamics(scenario.scene, codegen.load_interpreted if few else codegen.load)
+    assert isinstance(scenario.study, MotionStudy)
+    end = scenario.study.duration
+    inputs = spans(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
+    rest = [log.equilibria[name][-1] for name in ("bend_angle", "elongation") if name in log.equilibria]
+    with np.errstate(all="ignore"):
+        return modes(dynamics, dynamics.state(np.column_stack(rest)), still(inputs))
+
+
+def _step_figures(
+    time: np.ndarray,
+    part: np.ndarray,
+    change: LastChange,
+    found: tuple[Mode, ...],
+    ring_down: RingDown | None,
+) -> dict[str, float | None]:
+    """Those of the part of the travel that is done. Raises ``InputError`` if samples miss a step's swings."""
+    if change.end - change.begin < _longest_swing(found):
+        _check_samples(time, found)
+    curve, begin = CubicSpline(time, part), change.begin
+    stays = 0.0 if ring_down is None else 0.5 * ring_down.period
+    times = {name: settling_time(curve, band, begin, stays) for name, band in BANDS.items()}
+    return {"rise_time": rise_time(curve, begin), "overshoot": overshoot(curve, begin)} | times
+
+
+def _ring_down(time: np.ndarray, along: np.ndarray, change: LastChange, found: tuple[Mode, ...]) -> RingDown:
+    """The fit to what follows the last change, if its samples show the lowest mode's swings."""
+    _check_samples(time, found)
+    free = time >= change.end
+    return fit_ring_down(time[free], along[free])
+
+
+def _longest_swing(found: tuple[Mode, ...]) -> float:
+    """Half a period (s) of the lowest mode that swings; 0 if none does."""
+    return max((0.5 / mode.frequency for mode in found if mode.swings), default=0.0)
+
+
+def _check_samples(time: np.ndarray, found: tuple[Mode, ...]) -> None:
+    """Raises ``InputError`` for samples too far apart to show the lowest mode: they would show another."""
+    spacing, swing = float(np.median(np.diff(time))), _longest_swing(found)
+    if 0.0 < swing < FEWEST_SAMPLES * spacing:
+        raise InputError(
+            f"samples too far apart: {spacing:.3g} s, where the lowest mode swings at {0.5 / swing:.4g} Hz. "
+            "Ask for more samples."
+        )
+
+
+def _nearest(found: tuple[Mode, ...], ring_down: RingDown | None) -> Mode | None:
+    """The mode whose frequency is nearest to the ring-down's; the lowest one if nothing rings."""
+    if ring_down is None or not found:
+        return found[0] if found else None
+    frequency = ring_down.frequency
+    return min(found, key=lambda mode: abs(mode.frequency - frequency))
