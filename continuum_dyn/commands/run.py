@@ -111,7 +111,7 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     from continuum_dyn.log_comparison import compare
     from continuum_dyn.record import StreamedLog, read_log
     from continuum_dyn.simulation import simulate
-    from continuum_dyn.views import rerun_view
+    from continuum_dyn.views.playback import recording as playback
 
     started = time.perf_counter()
     with StreamedLog(job.log) as streamed:
@@ -121,7 +121,7 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
             streamed.finish(result)
     log, recording = read_log(job.log), job.log.with_suffix(".rrd")
     with stage("recording written"):
-        rerun_view.save(log, recording)
+        playback.save([log], recording)
     wall_time = time.perf_counter() - started
     comparison = None if job.earlier is None else compare(job.earlier, log)
     record = _record(job.source, result, job.log, recording, wall_time)
