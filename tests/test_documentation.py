@@ -30,8 +30,14 @@ DOCS = REPOSITORY / "docs"
 PAGES = [REPOSITORY / "README.md", *sorted(DOCS.rglob("*.md"))]
 PERFORMED_ELSEWHERE = {"docs/how_to/own_effect.md"}
 """Pages with a test of their own: tests/test_own_effect_page.py."""
-SLOW: set[str] = set()
-"""Pages that take more than a second or two."""
+SLOW = {
+    "docs/how_to/accuracy.md",
+    "docs/how_to/hard_cases.md",
+    "docs/how_to/tension_ramp.md",
+    "docs/theory/rone2012.md",
+    "docs/tutorial.md",
+}
+"""Pages that take more than a second or two, most of it for what they compile."""
 LANGUAGES = {"console", "python", "toml", "text", "diff", "csv"}
 BLOCK = re.compile(r"^```(\S*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 RUNNER = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
@@ -115,6 +121,8 @@ class Reader:
         command, _, target = command.partition(" > ")
         words = shlex.split(command, comments=True)
         program, arguments = words[0], [name for word in words[1:] for name in expanded(word)]
+        if arguments[:1] == ["play"] and "--save" not in arguments:
+            arguments += ["--save", "played.rrd"]
         assert program in ("continuum-dyn", "make", "cat", "ls"), f"cannot be tried: {command}"
         if program != "continuum-dyn":
             return self.start(program, arguments)
