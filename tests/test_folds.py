@@ -11,7 +11,7 @@ from scipy.optimize import root
 from continuum_dyn import Run, load_scenario, simulate
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.study import RampStudy, Scenario
-from continuum_dyn.views import plots
+from continuum_dyn.views import log_plots
 from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path
 
 SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
@@ -114,7 +114,7 @@ def test_picture_of_a_path_marks_its_folds(followed: Run, tmp_path: Path) -> Non
     write_log(followed, tmp_path / "path.h5")
     log = read_log(tmp_path / "path.h5")
     assert log.equilibria["critical"].sum() == 2
-    labels = plots.ramp(log).axes[0].get_legend_handles_labels()[1]
+    labels = log_plots.picture(log, ["tip"]).axes[0].get_legend_handles_labels()[1]
     assert labels == ["stable", "unstable", "fold"]
 
 

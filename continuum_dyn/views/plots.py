@@ -1,4 +1,4 @@
-"""Figures made from logs."""
+"""Figures of what is computed apart from a log: cost, modes, a paper's reproduction."""
 
 from itertools import cycle, pairwise
 from typing import Any
@@ -9,7 +9,6 @@ from matplotlib.ticker import NullFormatter
 
 from continuum_dyn.cost import Cost
 from continuum_dyn.modes import Mode, RestModes
-from continuum_dyn.record import Log
 from continuum_dyn.reproduce import Rone2012, Shapes
 from continuum_dyn.views.backbone import backbone
 from statics.equilibria import shape_of
@@ -36,43 +35,6 @@ LIFTS_CLEARLY = 0.5
 """N; below it the paper's arm stays within a millimetre of the base's height."""
 PARTS_CLEARLY = 1.0
 """N; from here on the printed equations' tip stands clear of the others."""
-
-
-def step_response(log: Log) -> Figure:
-    """Shapes on the way up, the tip against its equilibrium, and the energies of a step response."""
-    figure = Figure(figsize=(9.0, 6.2), layout="constrained")
-    axes: dict[str, Any] = figure.subplot_mosaic(
-        [["shape", "shape"], ["tip", "energy"]], height_ratios=[1.0, 1.4]
-    )
-    _draw_shapes(axes["shape"], log)
-    _draw_tip(axes["tip"], log)
-    _draw_energies(axes["energy"], log)
-    figure.suptitle(log.title)
-    return figure
-
-
-def ramp(log: Log) -> Figure:
-    """Tip angle against the first cable's tension or load factor: solid if stable, else dashed, folds marked.
-
-    What jumps is not joined.
-    """
-    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
-    axes, points = figure.subplots(), log.equilibria
-    name = "tension" if points["tension"].shape[1] else "load_factor"
-    drive, tip = points[name][:, 0], points["disk_theta"][:, -1]
-    stable, critical = points["stable"].astype(bool), points["critical"]
-    for start, end in pairwise(range(len(drive))):
-        if not points["jumped"][end]:
-            steady = (stable | (critical > 0))[[start, end]].all() and stable[[start, end]].any()
-            axes.plot(drive[[start, end]], tip[[start, end]], "k-" if steady else "k--", lw=1.2)
-    axes.plot(drive[stable], tip[stable], "ko", ms=4, label="stable")
-    axes.plot(drive[~stable], tip[~stable], "ko", mfc="w", ms=4, label="unstable")
-    for kind, marker, label in ((1, "s", "fold"), (2, "D", "branching")):
-        if (critical == kind).any():
-            axes.plot(drive[critical == kind], tip[critical == kind], f"C3{marker}", ms=6, label=label)
-    axes.set(xlabel=QUANTITIES[name].label, ylabel="tip angle (rad)", title=log.title)
-    axes.legend()
-    return figure
 
 
 def cost(measured: Cost) -> Figure:
@@ -186,57 +148,6 @@ def _draw_meshes(axes: Any, measured: Cost) -> None:
     axes.loglog(both, limits, "--s", color="C0", ms=5, lw=1.2, label="from two")
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.legend()
-
-
-def _draw_shapes(axes: Any, log: Log) -> None:
-    motion, rest = log.trajectory, log.equilibria
-    segments_to_disk = motion["length"].shape[1] // motion["disk_x"].shape[1]
-    for rank, sample in enumerate(shown := _on_the_way_up(motion["disk_y"][:, -1])):
-        points = 1e3 * backbone(motion, np.array([sample]), ARC_POINTS)[0]
-        grey = str(0.75 - 0.6 * rank / (len(shown) - 1))
-        axes.plot(*points.T, color=grey, lw=1.6)
-        axes.plot(*points[:: ARC_POINTS * segments_to_disk].T, "o", color=grey, ms=3.5)
-        label = f"{motion['time'][sample] * 1e3:.0f} ms"
-        axes.annotate(label, points[-1], xytext=(7, 0), textcoords="offset points", fontsize=8, va="center")
-    final = 1e3 * backbone(rest, np.array([-1]), ARC_POINTS)[0]
-    axes.plot(*final.T, color="C3", lw=2.0, ls="--", label="static equilibrium")
-    axes.set(xlabel="x (mm)", ylabel="y (mm)", title="Shapes up to the first peak (y stretched)")
-    axes.margins(x=0.08)
-    axes.legend(loc="upper left")
-
-
-def _on_the_way_up(tip_y: np.ndarray) -> list[int]:
-    """Samples at which the tip has done 0, 1, ... 4 quarters of its way to the first peak."""
-    way = np.abs(tip_y - tip_y[0])
-    peak = int(np.argmax(way))
-    return [int(np.argmax(way[: peak + 1] >= part * way[peak])) for part in np.linspace(0.0, 1.0, 5)]
-
-
-def _draw_tip(axes: Any, log: Log) -> None:
-    motion = log.trajectory
-    axes.plot(motion["time"], 1e3 * motion["disk_y"][:, -1], color="k", lw=1.2, label="motion")
-    axes.axhline(1e3 * log.equilibria["disk_y"][-1, -1], color="C3", ls="--", label="static equilibrium")
-    axes.set(
-        xlabel=QUANTITIES["time"].label, ylabel="tip y (mm)", title=f"Tip: {log.outcome.replace('_', ' ')}"
-    )
-    axes.legend(loc="lower right")
-
-
-def _draw_energies(axes: Any, log: Log) -> None:
-    motion = log.trajectory
-    styles = {
-        "input_work": ("-", "k"),
-        "dissipated_energy": ("--", "C1"),
-        "elastic_energy": ("-.", "C0"),
-        "gravity_energy": ((0, (6, 1, 1, 1, 1, 1)), "C4"),
-        "kinetic_energy": (":", "C2"),
-    }
-    for name, (style, color) in styles.items():
-        change = motion[name] - motion[name][0]
-        axes.plot(motion["time"], 1e3 * change, ls=style, color=color, label=name.replace("_", " "))
-    axes.set(xlabel=QUANTITIES["time"].label, ylabel="since the start (mJ)", title="Where the work goes")
-    axes.margins(y=0.25)
-    axes.legend(loc="upper right", ncols=2, fontsize=8)
 
 
 def rone2012(found: Rone2012) -> Figure:

@@ -1,0 +1,58 @@
+"""``continuum-dyn plot``: a figure of a log, for print."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from continuum_dyn.commands.show import make_folder
+from statics.errors import InputError, did_you_mean
+from statics.interruption import held
+
+SUFFIXES = (".png", ".svg", ".pdf")
+DOTS_PER_INCH = 200
+
+
+def plot(
+    log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log.", show_default=False)],
+    parts: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[PART]...", help="Of shapes, tip, energies; by default all.", show_default=False
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PICTURE",
+            help="PNG, SVG or PDF by its suffix. By default logs/NAME_plot.png.",
+            show_default=False,
+        ),
+    ] = None,
+    at: Annotated[
+        list[float] | None,
+        typer.Option(
+            metavar="VALUE", help="A time (s), or value of a ramp, whose shape is drawn. Repeatable."
+        ),
+    ] = None,
+) -> None:
+    """Draw the shapes, the tip and the energies of a log.
+
+    Over the time of a motion, or the tension, length or load factor of a ramp. Lines can be told apart in
+    black and white.
+    """
+    from continuum_dyn.record import read_log
+    from continuum_dyn.views import log_plots
+
+    for part in parts or []:
+        if part not in log_plots.PARTS:
+            raise InputError(f"plot draws no '{part}'.{did_you_mean(part, log_plots.PARTS)}")
+    picture = out or Path("logs") / f"{log.stem}_plot.png"
+    if picture.suffix.lower() not in SUFFIXES:
+        raise InputError(f"--out takes a name that ends in {', '.join(SUFFIXES)}; read: {picture.name}.")
+    read = read_log(log)
+    figure = log_plots.picture(read, parts or [], at or [])
+    make_folder(picture.parent)
+    with held():
+        figure.savefig(picture, dpi=DOTS_PER_INCH)
+    typer.echo(f"written: {picture}")
