@@ -17,8 +17,6 @@ extensions = [
     "sphinx.ext.mathjax",
     "generated_reference",
 ]
-exclude_patterns = ["Thumbs.db", ".DS_Store"]
-nitpicky = False
 
 html_theme = "furo"
 html_title = "continuum-dyn"
@@ -28,17 +26,14 @@ html_theme_options = {
     "sidebar_hide_name": False,
     "light_css_variables": {"color-brand-primary": "#1f5a8a", "color-brand-content": "#1f5a8a"},
 }
+smartquotes = False
 html_copy_source = False
 html_show_sourcelink = False
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence"]
 myst_heading_anchors = 3
-suppress_warnings = ["misc.highlighting_failure"]
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "signature"
-autodoc_typehints_format = "short"
-autodoc_default_options = {"members": True, "show-inheritance": False}
-autodoc_class_signature = "mixed"
-python_use_unqualified_type_names = True
+autodoc_typehints = "none"  # shapes and units stand in the docstrings
+autodoc_default_options = {"members": True}
 maximum_signature_line_length = 88

@@ -52,17 +52,15 @@ def prose(docstring: str) -> str:
 def commands() -> str:
     """Every command: what it does, its arguments, its options."""
     group: Any = typer.main.get_command(app)
-    parts = [of_every_command(group)]
+    parts = []
     for panel, found in groupby(group.commands.items(), lambda named: named[1].rich_help_panel):
         parts.append(f"## {panel}")
         parts += [_command(name, command) for name, command in found]
+    of_every = [(_spelled(p), p.help) for p in group.params if p.rich_help_panel == EVERY_COMMAND]
+    of_none = [(_spelled(p), p.help) for p in group.params if p.rich_help_panel != EVERY_COMMAND]
+    parts += [f"## {EVERY_COMMAND}", "Before its name, or after it.", table(("option", "does"), of_every)]
+    parts += ["## Options without a command", table(("option", "does"), of_none)]
     return "\n\n".join(parts)
-
-
-def of_every_command(group: Any) -> str:
-    """The options that stand before any command's name or after it."""
-    rows = [(_spelled(option), option.help) for option in group.params]
-    return "\n\n".join(["Before a command, or after it:", table(("option", ""), rows)])
 
 
 def _command(name: str, command: Any) -> str:
@@ -79,7 +77,7 @@ def _command(name: str, command: Any) -> str:
     rows = [(code(p.metavar), p.help, _default(p)) for p in arguments]
     rows += [(_spelled(p), p.help, _default(p)) for p in options]
     told = [f"### {name}", f"```text\n{usage}\n```", prose(command.help)]
-    return "\n\n".join([*told, table(("", "", "by default"), rows)] if rows else told)
+    return "\n\n".join([*told, table(("given", "is", "by default"), rows)] if rows else told)
 
 
 def _spelled(option: Any) -> str:
@@ -100,6 +98,12 @@ def exit_statuses() -> str:
 # Scenario keys
 
 
+OF_EFFECTS = """\
+The effects in play: `gravity = {}` takes one with what it has by default. What is not named is in no
+equation. `cables`, `cable_friction` and `loads` are no keys here: they come with `[[cables]]`, their
+`friction`, and `[[loads]]`."""
+
+
 def scenario_keys() -> str:
     """Every table of a scenario file: its keys, what they may be, what they mean."""
     schema = json_schema()
@@ -108,13 +112,14 @@ def scenario_keys() -> str:
     for name, key in schema["properties"].items():
         reference = _reference(key)
         if name == "effects":
-            parts += ["## `[effects]`", prose(key["description"]), effects()]
+            parts += ["## `[effects]`", OF_EFFECTS, effects()]
         elif name == "study":
             parts += ["## `[study]`", *_studies(key, definitions)]
         elif reference:
             heading = f"[[{name}]]" if "items" in key else f"[{name}]"
             of_table = definitions[reference]
-            parts += [f"## `{heading}`", prose(of_table["description"]), _keys(of_table, definitions)]
+            told = prose(of_table["description"]).removeprefix(f"{heading}: ")
+            parts += [f"## `{heading}`", told[0].upper() + told[1:], _keys(of_table, definitions)]
     return "\n\n".join([*parts, "## Profiles", *_profiles(definitions)])
 
 
@@ -167,11 +172,11 @@ def _values(key: dict[str, Any], definitions: dict[str, Any]) -> str:
     choices = key.get("oneOf") or key.get("anyOf")
     if choices and any(_is_profile(choice, definitions) for choice in choices):
         plain = [choice for choice in choices if not _is_profile(choice, definitions)]
-        return ", ".join([*(_values(choice, definitions) for choice in plain), "[profile](#profiles)"])
+        return ", or ".join([*(_values(choice, definitions) for choice in plain), "[profile](#profiles)"])
     if choices and "discriminator" in key:
         return "table"
     if choices:
-        return ", ".join(_values(choice, definitions) for choice in choices)
+        return ", or ".join(_values(choice, definitions) for choice in choices)
     if _reference(key):
         found = definitions[_reference(key)]
         if "enum" in found:
@@ -193,13 +198,13 @@ def _number_or_text(key: dict[str, Any], definitions: dict[str, Any]) -> str:
     if key["type"] == "array" and "prefixItems" in key:
         return f"list of {len(key['prefixItems'])} numbers"
     if key["type"] == "array":
-        return f"list of: {_values(key['items'], definitions)}"
+        return "list of them"
     if key["type"] == "object":
-        return f"table of: {_values(key['additionalProperties'], definitions)}"
-    words = {"number": "number", "integer": "integer", "string": "text", "boolean": "true or false"}
+        return f"table of {_values(key['additionalProperties'], definitions)}s"
+    words = {"number": "number", "integer": "integer", "string": "text", "boolean": "`true` or `false`"}
     signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
     bounds = [f"{sign} {key[name]:g}" for name, sign in signs.items() if name in key]
-    return " ".join([words[key["type"]], *bounds])
+    return " ".join([words[key["type"]], ", ".join(bounds)]).strip()
 
 
 def effects() -> str:
@@ -208,7 +213,9 @@ def effects() -> str:
     parts = []
     for name, effect in EFFECTS.items():
         needs = ", ".join(code(quantity) for quantity in effect.arm_quantities)
-        lines = [f"On each {effect.place}, {'at rest and in motion' if effect.acts_at_rest else 'in motion'}."]
+        lines = [
+            f"On each {effect.place}, {'at rest and in motion' if effect.acts_at_rest else 'in motion'}."
+        ]
         lines += [f"Needs the arm's {needs}."] if needs else []
         lines += [f"Source: {effect.source}."]
         parts += [f"### `{name}`", prose(_text(effect)), " ".join(lines)]
@@ -255,7 +262,9 @@ def _documented(path: str, value: Any) -> str:
 PUBLIC: dict[Any, Iterable[str]] = {
     continuum_dyn: continuum_dyn.__all__,
     statics: statics.__all__,
-    continuum_dyn.effects: [effect.__name__ for name, effect in EFFECTS.items() if name not in STATIC_EFFECTS],
+    continuum_dyn.effects: [
+        effect.__name__ for name, effect in EFFECTS.items() if name not in STATIC_EFFECTS
+    ],
     continuum_dyn.profiles: [*(profile.__name__ for profile in PROFILES.values()), "Span", "spans"],
     continuum_dyn.study: [*(study.__name__ for study in STUDIES.values()), "Solver", "Accuracy"],
     continuum_dyn.dynamics: ["Dynamics", "Observation"],
@@ -278,7 +287,23 @@ class Generated(SphinxDirective):
         return self.parse_text_to_nodes(PARTS[self.arguments[0]](), allow_section_headings=True)
 
 
+def bars_as_text(_app: Any, _what: str, _name: str, _value: Any, _options: Any, lines: list[str]) -> None:
+    """In docstrings |v| is a size, and no substitution of reStructuredText."""
+    for number, line in enumerate(lines):
+        parts = line.split("``")
+        parts[::2] = [part.replace("|", "\\|") for part in parts[::2]]
+        lines[number] = "``".join(parts)
+
+
+def without_factories(*given: Any) -> tuple[str, Any] | None:
+    """Signatures of dataclasses without how they make their defaults."""
+    signature, returns = given[-2:]
+    return signature and (signature.replace("=<factory>", "=..."), returns)
+
+
 def setup(application: Sphinx) -> dict[str, Any]:
     """Tell Sphinx of the directive."""
+    application.connect("autodoc-process-docstring", bars_as_text)
+    application.connect("autodoc-process-signature", without_factories)
     application.add_directive("generated", Generated)
     return {"parallel_read_safe": True}

@@ -8,11 +8,11 @@ from playback_pictures import playback_pictures
 
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.cost import measure
+from continuum_dyn.ramp_answers import ramp_answers
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.reproduce import reproduce
 from continuum_dyn.settling_answers import settling
 from continuum_dyn.views import log_plots, plots, ramp_plot, settling_plot
-from continuum_dyn.ramp_answers import ramp_answers
 
 HERE = Path(__file__).parent
 SCENARIOS = HERE.parent / "scenarios"
@@ -39,7 +39,7 @@ def figures(folder: Path) -> dict[str, Figure]:
         "playback.png": playback,
         "playback_window.png": window,
         "tension_ramp.png": log_plots.picture(read_log(logged("tension_ramp", folder)), ["shapes"]),
-        "slow_ramp.png": ramp_plot.ramp(slow.title, ramp_answers(slow)),
+        "slow_ramp.png": ramp_plot.ramp(slow.title, ramp_answers(slow, error=1e-4)),
         "snap_through.png": log_plots.picture(read_log(logged("snap_through", folder)), ["tip"]),
         "cost.png": plots.cost(measure(load_scenario(SCENARIOS / "step_response.toml"))),
         "rone2012.png": plots.rone2012(reproduce("rone2012")),

@@ -2,13 +2,13 @@
 
 A page is followed from its top, in a folder of its own that holds the scenarios and one Python session.
 
-- ``console``: lines that begin with "$ " are commands. The lines below one are of what it prints, in that order;
-  "..." stands for anything. A command succeeds, unless "$ echo $?" below it shows another exit status.
+- ``console``: lines that begin with "$ " are commands. The lines below one are of what it prints, in that
+  order; "..." stands for anything. A command succeeds, unless "$ echo $?" below it shows another exit status.
 - ``python``: run. A block ``text`` right below it is what it prints, in the same way.
 - ``toml`` that begins with "# NAME.toml": a file that is written. Other blocks are only shown.
 
-``make`` is only asked what it would do, since it installs; the checks before anything lands run it. Pictures are
-not looked at, and the viewer opens no window, because pages save instead.
+``make`` is only asked what it would do, since it installs; the checks before anything lands run it. ``play``
+writes a file and opens no window.
 """
 
 import contextlib
@@ -31,8 +31,10 @@ PAGES = [REPOSITORY / "README.md", *sorted(DOCS.rglob("*.md"))]
 PERFORMED_ELSEWHERE = {"docs/how_to/own_effect.md"}
 """Pages with a test of their own: tests/test_own_effect_page.py."""
 SLOW = {
+    "README.md",
     "docs/how_to/accuracy.md",
     "docs/how_to/hard_cases.md",
+    "docs/how_to/settling.md",
     "docs/how_to/tension_ramp.md",
     "docs/theory/rone2012.md",
     "docs/tutorial.md",
@@ -94,6 +96,7 @@ class Reader:
         self.status = 0
 
     def follow(self, block: Block) -> None:
+        """Do what a block says."""
         if block.language == "console":
             self.type(block.text)
         elif block.language == "python":
@@ -105,6 +108,7 @@ class Reader:
             Path(name[1]).write_text(block.text, encoding="utf-8")
 
     def type(self, text: str) -> None:
+        """Enter the commands of a console block, and compare what they print."""
         entries = re.split(r"^\$ ", text, flags=re.MULTILINE)
         assert not entries[0].strip(), f"a console block begins with a command: {text}"
         for number, entry in enumerate(entries[1:], start=1):
@@ -135,10 +139,9 @@ class Reader:
         return result.output
 
     def start(self, program: str, arguments: list[str]) -> str:
+        """What another program prints."""
         dry = ["--dry-run", "--directory", str(REPOSITORY)] if program == "make" else []
-        done = subprocess.run(
-            [program, *dry, *arguments], capture_output=True, text=True, check=False
-        )
+        done = subprocess.run([program, *dry, *arguments], capture_output=True, text=True, check=False)
         self.status = done.returncode
         return done.stdout + done.stderr
 
