@@ -61,7 +61,7 @@ $(VENV)/made:
 	@touch $@
 
 $(VENV)/run: $(VENV)/made pyproject.toml constraints.txt
-	$(INSTALL) .
+	$(INSTALL) ".[all]"
 	@touch $@
 
 $(VENV)/dev: $(VENV)/made pyproject.toml constraints.txt

@@ -42,7 +42,7 @@ class Case:
         self.dynamics = Dynamics(scenario.scene)
         self.stretches = spans(scenario.profiles, scenario.study.duration)
         self.samples = np.linspace(0.0, scenario.study.duration, scenario.study.samples)
-        rest = equilibrium(scenario.scene, scenario.initial_tension)
+        rest = equilibrium(scenario.scene, scenario.initial_inputs)
         self.start = self.dynamics.state(rest.coordinates)
 
     def run(self, solver: Solver) -> Trajectory:

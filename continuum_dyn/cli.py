@@ -31,6 +31,8 @@ from continuum_dyn.commands.shared_options import (
     WithoutCache,
     with_shared_options,
 )
+from continuum_dyn.commands.show import wrapped
+from continuum_dyn.extras import extras_named
 from statics.errors import ContinuumError
 
 BAD_INPUT = 2
@@ -106,9 +108,10 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def guarded(*arguments: Any, **options: Any) -> None:
         try:
-            command(*arguments, **options)
+            with extras_named():
+                command(*arguments, **options)
         except ContinuumError as error:
-            typer.echo(f"error: {error}", err=True)
+            typer.echo(wrapped(f"error: {error}"), err=True)
             raise typer.Exit(BAD_INPUT) from error
         except KeyboardInterrupt as error:
             typer.echo("interrupted", err=True)
@@ -134,10 +137,19 @@ for _panel, _command in COMMANDS:
 
 
 def main() -> None:
-    """Entry point of ``continuum-dyn``."""
+    """Run the command line. After Ctrl-C, whatever that comes out as, the exit status is ``INTERRUPTED``."""
+    presses = []
+
+    def interrupt(_signal: int, _frame: object) -> None:
+        presses.append(_signal)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
     try:
         app()
-    except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
+    except BaseException:
+        if presses:
+            sys.exit(INTERRUPTED)
+        raise
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is said and on disk

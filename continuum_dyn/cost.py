@@ -132,7 +132,7 @@ class Motion:
         self.dynamics = Dynamics(scenario.scene)
         self.stretches = spans(scenario.profiles, scenario.study.duration)
         self.samples = np.linspace(0.0, scenario.study.duration, scenario.study.samples)
-        rest = StaticSolver(scenario.scene).solve(scenario.initial_tension)
+        rest = StaticSolver(scenario.scene).solve(scenario.initial_inputs)
         if not rest.found:
             raise InputError(f"the motion has no equilibrium to start from: {rest.outcome}.")
         self.start = self.dynamics.state(rest.coordinates)

@@ -24,7 +24,7 @@ def last_change(scenario: Scenario, until: float) -> LastChange:
 
     Raises ``InputError`` if they never change, or still do at that time.
     """
-    drives = (*scenario.tension, *scenario.load_factors, *scenario.base_motion)
+    drives = (*scenario.drives, *scenario.load_factors, *scenario.base_motion)
     profiles = [profile for profile in drives if not isinstance(profile, tuple)]
     stretches = spans(profiles, until)
     before = np.array([profile.initial for profile in profiles])

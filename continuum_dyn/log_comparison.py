@@ -9,8 +9,8 @@ from continuum_dyn.record import Log
 
 PART_OF_LENGTH = 1e-7
 """Part of the arm's length by which tips may differ where no tolerance says how far."""
-ROUNDING = 10.0
-"""Global errors over the tolerance of a step."""
+STEPS_TOGETHER = 100.0
+"""What the errors of all steps may come to, over the tolerance of one."""
 
 
 @dataclass(frozen=True)
@@ -67,4 +67,4 @@ def _allowed(log: Log) -> float:
     if "tip_error" in log.attributes:
         return log.attributes["tip_error"]
     tolerance = log.attributes.get("rtol", 0.0) + log.attributes.get("atol", 0.0)
-    return length * max(ROUNDING * tolerance, PART_OF_LENGTH)
+    return length * max(STEPS_TOGETHER * tolerance, PART_OF_LENGTH)

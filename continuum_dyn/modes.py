@@ -143,10 +143,10 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
     """
     check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
-    rest = StaticSolver(scenario.scene).solve(scenario.initial_tension)
+    rest = StaticSolver(scenario.scene).solve(scenario.initial_inputs)
     if rest.outcome is not Outcome.COMPLETED:
         raise InputError(f"modes are those about a stable equilibrium; found: {rest.outcome}.")
-    found = modes(dynamics, dynamics.state(rest.coordinates), still(scenario.initial_tension))
+    found = modes(dynamics, dynamics.state(rest.coordinates), still(scenario.initial_inputs))
     return RestModes(scenario, rest, found)
 
 
@@ -159,11 +159,11 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
     try:
         without = scenario.without(effect)
         with np.errstate(all="ignore"):
-            rest = StaticSolver(without.scene, codegen.load_interpreted).solve(without.initial_tension)
+            rest = StaticSolver(without.scene, codegen.load_interpreted).solve(without.initial_inputs)
             if rest.outcome is not Outcome.COMPLETED:
                 return None
             dynamics = Dynamics(without.scene, codegen.load_interpreted)
-            return rates(dynamics, dynamics.state(rest.coordinates), still(without.initial_tension))
+            return rates(dynamics, dynamics.state(rest.coordinates), still(without.initial_inputs))
     except (InputError, ArithmeticError, ValueError):  # Python raises where compiled code goes on with nan
         return None
 

@@ -17,7 +17,7 @@ def at_pace(scenario: Scenario, factor: float) -> Scenario:
         raise InputError(f'only a motion has a pace; this is "{scenario.study.kind}".')
     return replace(
         scenario,
-        tension=tuple(_faster(profile, factor) for profile in scenario.tension),
+        drives=tuple(_faster(profile, factor) for profile in scenario.drives),
         load_factors=tuple(_faster(profile, factor) for profile in scenario.load_factors),
         base_motion=tuple(_faster(profile, factor) for profile in scenario.base_motion),
         study=replace(scenario.study, duration=scenario.study.duration / factor),

@@ -103,8 +103,7 @@ class Ramp:
     def pieces(self) -> list[Piece]:
         """Three pieces, or two if the ramp starts at time zero."""
         slope = (self.after - self.before) / (self.end - self.start)
-        rising = [straight(self.start, self.before, slope), straight(self.end, self.after)]
-        return [straight(0.0, self.before), *rising] if self.start > 0 else rising
+        return _from_rest_to_rest(self, straight(self.start, self.before, slope))
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -131,16 +130,19 @@ class SmoothRamp:
     def pieces(self) -> list[Piece]:
         """Three pieces, or two if the ramp starts at time zero."""
         mean, amplitude = (self.before + self.after) / 2, (self.after - self.before) / 2
-        rising = [
-            (self.start, mean, 0.0, amplitude, pi / (self.end - self.start), -pi / 2),
-            straight(self.end, self.after),
-        ]
-        return [straight(0.0, self.before), *rising] if self.start > 0 else rising
+        rise = self.start, mean, 0.0, amplitude, pi / (self.end - self.start), -pi / 2
+        return _from_rest_to_rest(self, rise)
 
 
 def _check_order(start: float, end: float) -> None:
     if end <= start:
         raise InputError(f"a ramp must end after it starts; start is {start:g} s, end {end:g} s")
+
+
+def _from_rest_to_rest(ramp: Ramp | SmoothRamp, rise: Piece) -> list[Piece]:
+    """The rise between the values that hold before it, if there is time before it, and after it."""
+    rising = [rise, straight(ramp.end, ramp.after)]
+    return [straight(0.0, ramp.before), *rising] if ramp.start > 0 else rising
 
 
 @dataclass(frozen=True, config=STRICT)

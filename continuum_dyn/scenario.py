@@ -36,8 +36,8 @@ from statics.scene import Scene
 
 MAX_FILE_SIZE = 5_000_000
 """Of a scenario, bytes; long tables have files of their own."""
-LARGEST = 1e30
-"""Size of the largest number of a scenario; that of the smallest is one over it."""
+SMALLEST, LARGEST = 1e-60, 1e30
+"""Sizes of numbers of a scenario; the inertia of a disk of 1 nm is of 1e-44 kg m^2."""
 
 
 def load_scenario(path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
@@ -92,13 +92,13 @@ def _check_sizes(content: Any, place: str) -> None:
     elif type(content) in (int, float) and not _is_physical(abs(content)):
         raise InputError(
             f"{place[:60]!r}: too {'large' if abs(content) > 1 else 'small'} a number to compute with. "
-            f"Allowed: 0, and sizes from {1 / LARGEST:g} to {LARGEST:g}, in SI units."
+            f"Allowed: 0, and sizes from {SMALLEST:g} to {LARGEST:g}, in SI units."
         )
 
 
 def _is_physical(size: float) -> bool:
     """Also true of what is no finite number: that is told where it is read."""
-    return size == 0 or 1 / LARGEST <= size <= LARGEST or not size < inf
+    return size == 0 or SMALLEST <= size <= LARGEST or not size < inf
 
 
 def _check_tolerances(content: dict[str, Any]) -> None:
@@ -126,21 +126,21 @@ def _build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario
         effects.append(CableFriction())
     if file.loads:
         effects.append(DiskLoads(loads=tuple(map(_load, file.loads))))
-    tension = tuple(_ramp_or_profile(*_drive(cable), tables, is_ramp) for cable in file.cables)
+    drives = tuple(_ramp_or_profile(*_drive(cable), tables, is_ramp) for cable in file.cables)
     factors = tuple(
         _ramp_or_profile(load.factor, "factor", tables, is_ramp, "loads")
         for load in file.loads
         if load.factor is not None
     )
     if is_ramp:
-        repeated = _repeated((*tension, *factors))
-        tension, factors = repeated[: len(tension)], repeated[len(tension) :]
+        repeated = _repeated((*drives, *factors))
+        drives, factors = repeated[: len(drives)], repeated[len(drives) :]
     motion = _base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
     return Scenario(
         scene=Scene(replace(_arm(file), base=base), effects),
-        tension=tension,
+        drives=drives,
         study=file.study,
         solver=file.solver,
         accuracy=file.accuracy,

@@ -24,7 +24,7 @@ from continuum_dyn.settling import settled, tip_gap
 from continuum_dyn.stability import Growth, judged, why_not_judged
 from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
 from continuum_dyn.trajectory import Trajectory
-from statics.arc_length import follow
+from statics.arc_length import MOST_STEPS, follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.interruption import Interruption, allowed, held
@@ -99,9 +99,10 @@ def simulate(
 ) -> Run:
     """Answer a scenario: see ``Run``.
 
-    ``progress`` is called with the fraction done; ``budget`` bounds the steps and seconds of a motion, by
-    default those of the scenario's solver. The ``sink`` is told of a motion while it runs. A motion that was
-    ``begun`` goes on from its last sample; where an accuracy is sought its trials begin anew.
+    ``progress`` is called with the fraction done; ``budget`` bounds the steps of a motion and the seconds of
+    a motion or a ramp, by default those of the scenario's solver. The ``sink`` is told of a motion while it
+    runs. A motion that was ``begun`` goes on from its last sample; where an accuracy is sought its trials
+    begin anew.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
     kept. Whatever happens while solving is an outcome, not an exception, Ctrl-C too: what was computed by
     then is in the run. Pressed again, it raises ``KeyboardInterrupt``.
@@ -114,7 +115,7 @@ def simulate(
         elif isinstance(scenario.study, MotionStudy):
             run = _motion(scenario, scenario.study, progress, budget, interruption, sink, begun)
         else:
-            run = _statics(scenario, interruption)
+            run = _statics(scenario, budget, interruption)
         if run.outcome is Outcome.INTERRUPTED:
             interruption.asked = False
     return run
@@ -176,27 +177,46 @@ def _coarse(mesh: Mesh, asked: float, seconds: float) -> str:
     )
 
 
-def _statics(scenario: Scenario, interruption: Interruption) -> Run:
+def _statics(scenario: Scenario, budget: Budget, interruption: Interruption) -> Run:
     try:
         with allowed(), stage("kernels of statics"):
             solver = StaticSolver(scenario.scene)
             solver.warm_up()
     except KeyboardInterrupt:
         return _interrupted_early(scenario)
+    inputs = scenario.initial_inputs[None, :]
     if isinstance(scenario.study, RampStudy):
-        inputs = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
-        others = scenario.initial_tension[inputs.shape[1] :]
-        inputs = np.hstack([inputs, np.tile(others, (len(inputs), 1))])
-    else:
-        inputs = scenario.initial_tension[None, :]
-    started = time.perf_counter()
-    if isinstance(scenario.study, RampStudy) and scenario.study.path == "arc_length":
-        path = follow(solver, inputs)
-        solve_time = time.perf_counter() - started
-        return Run(scenario, path.outcome, told_of_path(path), path.points, solve_time=solve_time)
+        ramps = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
+        inputs = np.hstack([ramps, np.tile(inputs[:, ramps.shape[1] :], (len(ramps), 1))])
+        if scenario.study.path == "arc_length":
+            return _followed(scenario, solver, inputs, budget, interruption)
+    return _one_by_one(scenario, solver, inputs, budget, interruption)
+
+
+def _followed(
+    scenario: Scenario, solver: StaticSolver, inputs: np.ndarray, budget: Budget, interruption: Interruption
+) -> Run:
+    """The path of equilibria through all its folds."""
+    started = time.monotonic()
+    steps = budget.spent_on(interruption.until_asked(range(MOST_STEPS)), started)
     with stage("equilibria"):
-        points = ramp(solver, interruption.until_asked(inputs))
-    solve_time = time.perf_counter() - started
+        path = follow(solver, inputs, steps=steps)
+    solve_time = time.monotonic() - started
+    outcome, message = path.outcome, told_of_path(path)
+    if outcome is Outcome.NO_EQUILIBRIUM and (interruption.asked or budget.is_spent(started)):
+        outcome, words = _cut_short(budget, interruption)
+        message = f"{words} {path.end.drive}"
+    return Run(scenario, outcome, message, path.points, solve_time=solve_time)
+
+
+def _one_by_one(
+    scenario: Scenario, solver: StaticSolver, inputs: np.ndarray, budget: Budget, interruption: Interruption
+) -> Run:
+    """A stable equilibrium for each set of inputs."""
+    started = time.monotonic()
+    with stage("equilibria"):
+        points = ramp(solver, budget.spent_on(interruption.until_asked(inputs), started))
+    solve_time = time.monotonic() - started
     message, growths = told_of_points(points), [None] * len(points)
     if any(point.stable is None for point in points):
         message = why_not_judged(scenario.scene) or ""
@@ -210,8 +230,16 @@ def _statics(scenario: Scenario, interruption: Interruption) -> Run:
             break
         before = point
     if len(points) < len(inputs):
-        outcome, message = Outcome.INTERRUPTED, f"interrupted after {len(points)} of {len(inputs)} points"
+        outcome, words = _cut_short(budget, interruption)
+        message = f"{words} after {len(points)} of {len(inputs)} points"
     return Run(scenario, outcome, message, points, solve_time=solve_time)
+
+
+def _cut_short(budget: Budget, interruption: Interruption) -> tuple[Outcome, str]:
+    """Why a ramp ended before its last point, as an outcome and in words."""
+    if interruption.asked:
+        return Outcome.INTERRUPTED, "interrupted"
+    return Outcome.BUDGET_EXCEEDED, f"{budget.seconds:g} s used up"
 
 
 def _limit(
@@ -260,9 +288,9 @@ def _motion(
         return _interrupted_early(scenario)
     stretches = spans(scenario.profiles, study.duration)
     started = time.perf_counter()
-    start = statics.solve(scenario.initial_tension)
+    start = statics.solve(scenario.initial_inputs)
     if not start.found:
-        limit = _limit(statics, start, scenario.initial_tension, None)
+        limit = _limit(statics, start, scenario.initial_inputs, None)
         solve_time = time.perf_counter() - started
         return Run(scenario, start.outcome, why(start, None, limit), [start], solve_time=solve_time)
     y = dynamics.state(start.coordinates)
@@ -338,10 +366,12 @@ def _end(
 def _static_path(
     statics: StaticSolver, trajectory: Trajectory, start: Equilibrium, monitor: Monitor
 ) -> list[Equilibrium]:
-    """The equilibrium of every sample, or of those before Ctrl-C."""
-    path = ramp(statics, monitor.interruption.until_asked(trajectory.inputs), start.coordinates)
+    """The equilibrium of every sample, or of those before Ctrl-C or the end of the budget."""
+    samples = monitor.interruption.until_asked(trajectory.inputs)
+    path = ramp(statics, monitor.budget.spent_on(samples, monitor.started), start.coordinates)
     if len(path) < len(trajectory.inputs):
-        monitor.stop(Outcome.INTERRUPTED, f"interrupted after the motion, {len(path)} points on its path")
+        outcome, message = _cut_short(monitor.budget, monitor.interruption)
+        monitor.stop(outcome, f"{message} after the motion, {len(path)} points on its path")
     return path
 
 

@@ -105,7 +105,8 @@ class Solver:
     shortest period of the arm at the start or of its drive. "auto" decides between them by the motion's own
     modes. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend angles; elongations use it
     times the segment's rest length, rates the same times the arm's natural frequency, energies times its
-    bending stiffness over that length. ``max_steps`` and ``max_seconds`` bound what a motion may cost.
+    bending stiffness over that length. ``max_steps`` bounds what a motion may cost,
+    ``max_seconds`` what a motion or a ramp may.
     """
 
     method: Method = "auto"
@@ -145,9 +146,10 @@ class Accuracy:
 
 @dataclasses.dataclass(frozen=True)
 class Scenario:
-    """A scene, the tension of each of its cables, and what is asked of it.
+    """A scene, what drives each of its cables, and what is asked of it.
 
-    ``tension`` holds a profile for each cable, or for a ramp study a list of tensions (N) for each;
+    ``drives`` holds a profile for each cable, or for a ramp study a list for each: of tensions (N), or of
+    displacements (m) of a cable that is driven by its length;
     ``text`` is the file that it was read from, ``tables`` those of the CSV files beside it, by name. With
     ``accuracy`` the solver's tolerances are the program's to choose; with ``chooses_mesh`` the number of the
     arm's sub-segments, too. ``load_factors`` has likewise a profile or a list for each driven load,
@@ -156,7 +158,7 @@ class Scenario:
     """
 
     scene: Scene
-    tension: tuple[Profile, ...] | tuple[tuple[float, ...], ...]
+    drives: tuple[Profile, ...] | tuple[tuple[float, ...], ...]
     study: Study
     solver: Solver = dataclasses.field(default_factory=Solver)
     accuracy: Accuracy | None = None
@@ -168,15 +170,17 @@ class Scenario:
     tables: Mapping[str, str] = dataclasses.field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        if len(self.tension) != self.scene.cables:
-            raise InputError(f"{len(self.tension)} tensions given for {self.scene.cables} cables.")
+        if len(self.drives) != self.scene.cables:
+            raise InputError(
+                f"{len(self.drives)} tensions or displacements given for {self.scene.cables} cables."
+            )
         if len(self.load_factors) != self.scene.driven_loads:
             raise InputError(
                 f"{len(self.load_factors)} factors given for {self.scene.driven_loads} driven loads."
             )
         if self.scene.arm.base_moves or self.base_motion:
             self._check_base()
-        for cable, profile in zip(self.scene.arm.cables, self.tension, strict=False):
+        for cable, profile in zip(self.scene.arm.cables, self.drives, strict=False):
             name, pulled = cable.name, not cable.driven_by_length
             if pulled and not isinstance(profile, tuple) and lowest(profile) < 0:
                 raise InputError(
@@ -264,7 +268,7 @@ class Scenario:
     @property
     def profiles(self) -> tuple[InPieces, ...]:
         """What drives a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
-        driven = (*self.tension, *self.load_factors)
+        driven = (*self.drives, *self.load_factors)
         profiles = tuple(p for p in driven if not isinstance(p, tuple))
         if len(profiles) != len(driven):
             raise InputError(
@@ -272,10 +276,10 @@ class Scenario:
             )
         return (*profiles, *self._others(profiles))
 
-    def _others(self, drives: tuple[Any, ...]) -> tuple[InPieces, ...]:
+    def _others(self, driven: tuple[Any, ...]) -> tuple[InPieces, ...]:
         """What drives a motion beside cables and loads, and the rates of cables that are driven by length."""
         pose, motion = self._of_base
-        drawn_in = (drives[number] for number in self.scene.driven_by_length)
+        drawn_in = (driven[number] for number in self.scene.driven_by_length)
         rates = (Constant(0.0) if isinstance(drive, tuple) else Rate(drive) for drive in drawn_in)
         return (*pose, *rates, *motion)
 
@@ -291,7 +295,7 @@ class Scenario:
     @property
     def ramps(self) -> tuple[tuple[float, ...], ...]:
         """The lists of a ramp study: of tensions, and then of load factors."""
-        driven = (*self.tension, *self.load_factors)
+        driven = (*self.drives, *self.load_factors)
         lists = tuple(values for values in driven if isinstance(values, tuple))
         if len(lists) != len(driven):
             raise InputError('a "ramp" study takes lists of tensions and load factors, or numbers.')
@@ -313,7 +317,7 @@ class Scenario:
         return dataclasses.replace(
             self,
             scene=scene,
-            tension=self.tension if scene.cables else (),
+            drives=self.drives if scene.cables else (),
             load_factors=self.load_factors if scene.driven_loads else (),
         )
 
@@ -324,8 +328,8 @@ class Scenario:
         return 1e-3 * self.scene.arm.total_length if asked is None else asked
 
     @property
-    def initial_tension(self) -> np.ndarray:
+    def initial_inputs(self) -> np.ndarray:
         """Inputs of the equilibrium that a study starts from, in the order of ``Scene.inputs``."""
-        driven = (*self.tension, *self.load_factors)
+        driven = (*self.drives, *self.load_factors)
         given = (*driven, *self._others(driven))
         return np.array([t[0] if isinstance(t, tuple) else t.initial for t in given], dtype=float)

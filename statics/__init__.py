@@ -1,14 +1,19 @@
 """Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
 
-from statics.arc_length import Path, follow_path
-from statics.arm import RONE2012_HOLE_OFFSET, Arm, Base, Cable, Each, Payload
-from statics.effects import Bending, CableFriction, Cables, DiskLoad, DiskLoads, Extension, Gravity
-from statics.effects.cables import disk_loads
-from statics.equilibria import Critical, Equilibrium, StaticSolver, equilibrium
-from statics.errors import ContinuumError, InputError
-from statics.outcome import Outcome
-from statics.ramp import tension_ramp
-from statics.scene import Scene
+from typing import TYPE_CHECKING
+
+from statics.lazy_names import loaded_when_asked_for
+
+if TYPE_CHECKING:
+    from statics.arc_length import Path, follow_path
+    from statics.arm import RONE2012_HOLE_OFFSET, Arm, Base, Cable, Each, Payload
+    from statics.effects import Bending, CableFriction, Cables, DiskLoad, DiskLoads, Extension, Gravity
+    from statics.effects.cables import disk_loads
+    from statics.equilibria import Critical, Equilibrium, StaticSolver, equilibrium
+    from statics.errors import ContinuumError, InputError
+    from statics.outcome import Outcome
+    from statics.ramp import tension_ramp
+    from statics.scene import Scene
 
 __all__ = [
     "RONE2012_HOLE_OFFSET",
@@ -37,3 +42,5 @@ __all__ = [
     "follow_path",
     "tension_ramp",
 ]
+
+__getattr__ = loaded_when_asked_for(__file__)

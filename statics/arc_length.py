@@ -10,7 +10,7 @@ for -r and for -dr/dplace, so a step costs O(n). Where the tangent turns back th
 of unstable directions changes and it does not, another path branches off.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -75,13 +75,19 @@ def follow_path(
     """
     check_followable(scene)
     solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
-    return follow(solver, ramp, None if start is None else start.coordinates, steps)
+    return follow(solver, ramp, None if start is None else start.coordinates, range(steps))
 
 
 def follow(
-    solver: StaticSolver, ramp: np.ndarray, start: np.ndarray | None = None, steps: int = MOST_STEPS
+    solver: StaticSolver,
+    ramp: np.ndarray,
+    start: np.ndarray | None = None,
+    steps: Iterable[object] = range(MOST_STEPS),
 ) -> Path:
-    """Likewise for inputs, shape (points, inputs), and a start's coordinates."""
+    """Likewise for inputs, shape (points, inputs), and a start's coordinates; one step for each of ``steps``.
+
+    Raises ``InputError`` for scenes without a potential.
+    """
     check_followable(solver.scene)
     first = solver.solve(ramp[0], start)
     if not first.found or len(ramp) == 1:
@@ -226,7 +232,13 @@ class ArcLength:
             return None
         return found[length], length
 
-    def follow(self, first: Equilibrium, steps: int = MOST_STEPS, *, until_critical: bool = False) -> Path:
+    def follow(
+        self,
+        first: Equilibrium,
+        steps: Iterable[object] = range(MOST_STEPS),
+        *,
+        until_critical: bool = False,
+    ) -> Path:
         """The path from an equilibrium at the ramp's first point to its last, or to a fold or branching."""
         return _Follower(self, first).follow(steps, until_critical)
 
@@ -243,9 +255,9 @@ class _Follower:
         self.here = arc.place_at(first.coordinates, 0.0, (0.0 * first.coordinates, 1.0))
         self.points, self.places = [first], [0.0]
 
-    def follow(self, steps: int, until_critical: bool) -> Path:
+    def follow(self, steps: Iterable[object], until_critical: bool) -> Path:
         last = len(self.arc.ramp) - 1
-        for _ in range(steps):
+        for _ in steps:
             stepped = self._step()
             if stepped is None:
                 return self._lost()
@@ -260,7 +272,7 @@ class _Follower:
                 return self._ended(Outcome.COMPLETED)
             if self.here.place <= 0.0 and not self.forwards:
                 return self._ended(Outcome.NO_EQUILIBRIUM, "it turns back beyond the ramp's first point")
-        return self._ended(Outcome.NO_EQUILIBRIUM, f"it takes more than {steps} steps")
+        return self._ended(Outcome.NO_EQUILIBRIUM, "it takes more steps than it may")
 
     def _step(self) -> tuple[_Place, Critical, bool] | None:
         """The next point of the path: a step on, or what comes first on its way; None if there is none."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         AT_LIMIT,
         AT_REST,
         BALANCED,
+        FALLING,
         LARGEST_TURN,
         LIMIT,
         NOT_FOUND,
@@ -34,8 +35,6 @@ FIRST_SLOWING, LEAST_SLOWING, MOST_SLOWING = 10.0, 1e-2, 1e3
 FAITHFUL, UNFAITHFUL = 0.25, 0.5
 """Errors of a step's linear prediction, over the residual, below or above which the next one is longer or
 shorter."""
-FALLING = 0.9
-"""A residual that no longer falls below this part of the last one has come to rounding."""
 
 
 def pose_sweep(

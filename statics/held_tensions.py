@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from statics.generated import ELIMINATE_HELD_START, PIVOT_COLUMNS, Carried, eliminate_held_step
+    from statics.generated import ELIMINATE_HELD_START, PIVOT_COLUMNS, eliminate_held_step
 
 
 def count_held(
@@ -17,21 +17,7 @@ def count_held(
 ) -> None:
     """Number of directions, into ``negative``, shape (1,), that are unstable with the tensions held."""
     descent, pivots = np.empty_like(residual), np.empty((residual.shape[0], PIVOT_COLUMNS))
-    keeping_signs = (0.0, 0.0, 1.0, *ELIMINATE_HELD_START[3:])
-    negative[0] = held_sweep(keeping_signs, segments, disks, chain, residual, descent, pivots)[0]
-
-
-def held_sweep(
-    start: "Carried",
-    segments: np.ndarray,
-    disks: np.ndarray,
-    chain: np.ndarray,
-    residual: np.ndarray,
-    descent: np.ndarray,
-    pivots: np.ndarray,
-) -> "Carried":
-    """Inwards: ``eliminate_sweep`` with the tensions held."""
-    carried = start
+    carried = (0.0, 0.0, 1.0, *ELIMINATE_HELD_START[3:])  # pivots keep their signs
     for i in range(residual.shape[0] - 1, -1, -1):
         carried = eliminate_held_step(i, carried, segments, disks, chain, residual, descent, pivots)
-    return carried
+    negative[0] = carried[0]

@@ -38,17 +38,33 @@ def kernel_folder() -> Path:
         ) from error
     if not _is_ours(status):
         raise KernelCacheError(
-            f"the folder for generated kernels, {folder}, may be written to by others, and kernels are code. "
-            f"Try: chmod 700 {folder}. {ADVICE}"
+            f"the folder for generated kernels, {folder}, {_whose(status, folder)} {ADVICE}"
         )
     return folder
 
 
+def _whose(status: os.stat_result, folder: Path) -> str:
+    """Why a folder is not safe, and what to do."""
+    if status.st_uid != os.getuid():
+        return "belongs to another user, and kernels are code."
+    return f"may be written to by others, and kernels are code. Try: chmod 700 {folder}."
+
+
 @contextmanager
 def no_cache() -> Iterator[None]:
-    """Within, kernels are kept in a folder of their own, which is removed at the end."""
+    """Within, kernels are kept in a folder of their own, which is removed at the end.
+
+    Raises ``KernelCacheError`` where no such folder can be made.
+    """
     before = os.environ.get(FOLDER)
-    with tempfile.TemporaryDirectory(prefix="continuum-dyn-", ignore_cleanup_errors=True) as folder:
+    try:
+        temporary = tempfile.TemporaryDirectory(prefix="continuum-dyn-", ignore_cleanup_errors=True)
+    except OSError as error:
+        raise KernelCacheError(
+            f"cannot make a temporary folder for generated kernels: {error.strerror}. "
+            "Name a folder for temporary files with the environment variable TMPDIR."
+        ) from error
+    with temporary as folder:
         os.environ[FOLDER] = folder
         try:
             yield

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from statics.search import (
         AT_LIMIT,
         AT_REST,
+        FALLING,
         LARGEST_TURN,
         LIMIT,
         NOT_FOUND,
@@ -215,12 +216,13 @@ def find_equilibrium(
     change, trial = np.empty_like(q), np.empty_like(q)
     pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
     potential, scale, clearance = pose_sweep(q, inputs, segments, disks, chain)
+    single = math.inf
     for iteration in range(1, most + 1):
         residual_sweep(disks, chain, residual)
         negative = descend(segments, disks, chain, residual, descent, pivots)
         substitute_sweep(chain, descent, change)
-        single, turn = measure(change, unit)
-        if single < AT_REST:
+        last, (single, turn) = single, measure(change, unit)
+        if single < AT_REST and not (COUPLED and single < FALLING * last):  # cables may catch in a small step
             if negative == 0:
                 advance(q, 1.0, change, q)
                 return STABLE, iteration

@@ -17,6 +17,8 @@ UNKNOWN = -1
 
 AT_REST = 1e-8
 """A Newton step below this (rad, or elongation over L0) is the last one: its square is below rounding."""
+FALLING = 0.9
+"""A residual or a step that no longer falls below this part of the last one has come to rounding."""
 AT_LIMIT = 1e-6
 """Clearance (over L0) at which an arm that still descends has reached its geometric limit."""
 LARGEST_TURN = 1.0

@@ -1,10 +1,12 @@
 """Scenes that the tests share: each new structure costs seconds to compile, so there are few."""
 
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
@@ -27,7 +29,11 @@ from statics import (
 )
 
 settings.register_profile("same_every_time", derandomize=True, deadline=None)
-settings.load_profile("same_every_time")
+settings.register_profile("explore", derandomize=False, deadline=None, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same_every_time"))
+# Hypothesis also draws the numbers that stand in modules imported so far: then what is drawn would depend on
+# the order of tests, and change with any number in the sources.
+providers._get_local_constants = lambda: providers._local_constants
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 JET = SCENARIOS / "follower_tip.toml"

@@ -8,6 +8,7 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Sequence
+from functools import cache
 from random import Random
 from typing import Any
 
@@ -34,10 +35,15 @@ def mutant(rng: Random, texts: Sequence[str]) -> str:
     text = rng.choice(texts)
     if rng.random() < 0.3:
         return spoiled(rng, text)
-    content = tomllib.loads(text)
+    content = copy.deepcopy(_tables_of(text))
     for _ in range(rng.randint(1, 4)):
         rng.choice(TABLE_CHANGES)(rng, content)
     return written(content)
+
+
+@cache
+def _tables_of(text: str) -> Tables:
+    return tomllib.loads(text)
 
 
 def spoiled(rng: Random, text: str) -> str:

@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from conftest import SCENARIOS
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 
 from continuum_dyn import cost
 from continuum_dyn.cli import app
+from continuum_dyn.commands.show import wrapped
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
 STEP = str(SCENARIOS / "step_response.toml")
@@ -148,6 +150,17 @@ def test_explain_measures_motions_only() -> None:
 def test_explain_writes_latex() -> None:
     result = runner.invoke(app, ["explain", STEP, "--latex"])
     assert r"P = - \frac{EA \dot{e} t_{r}}{L_{0}}" in result.stdout
+
+
+def test_messages_are_broken_at_words_on_a_terminal_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    message = "error: a/long/path/to/a/scenario.toml: " + "no such word. " * 9 + "\nand another --set"
+    assert wrapped(message) == message
+    monkeypatch.setenv("COLUMNS", "30")
+    monkeypatch.setattr(sys, "stderr", SimpleNamespace(isatty=lambda: True))
+    lines = wrapped(message).splitlines()
+    assert "  a/long/path/to/a/scenario.toml:" in lines
+    assert lines[-1] == "and another --set"
+    assert all(len(line) <= 30 for line in lines if "/" not in line)
 
 
 def test_play_refuses_what_is_not_a_log(tmp_path: Path) -> None:

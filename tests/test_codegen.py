@@ -12,7 +12,6 @@ from continuum_dyn import Scenario, implicit_kernel, motion_kernel, simulate
 from continuum_dyn.profiles import Constant
 from continuum_dyn.study import MotionStudy
 from statics import Scene, codegen, equilibrium, statics_kernel
-from statics.errors import KernelCacheError
 from statics.statics_kernel import RECIPE
 
 
@@ -67,39 +66,6 @@ def test_kernel_is_written_once_and_opens_with_what_made_it(own_cache: Path, pap
     codegen.load(rone2012(disks=9, stiffness=0.1), RECIPE)
     assert path.stat().st_mtime_ns == written
     assert own_cache.stat().st_mode & 0o777 == 0o700
-
-
-@pytest.mark.parametrize("damage", ["truncated", "edited", "binary"])
-def test_damaged_kernel_is_made_again(own_cache: Path, paper_arm: Scene, damage: str) -> None:
-    codegen.load(paper_arm, RECIPE)
-    (path,) = own_cache.glob("*.py")
-    whole = path.read_bytes()
-    spoiled = {
-        "truncated": whole[:500],
-        "edited": whole.replace(b"force_x", b"force_y"),
-        "binary": b"\xff\x00",
-    }
-    path.write_bytes(spoiled[damage])
-    codegen._loaded.clear()
-    codegen.load(paper_arm, RECIPE)
-    assert path.read_bytes() == whole
-
-
-def test_folder_that_others_may_write_to_is_refused(own_cache: Path, paper_arm: Scene) -> None:
-    own_cache.mkdir()
-    own_cache.chmod(0o777)
-    with pytest.raises(KernelCacheError, match="chmod 700"):
-        codegen.load(paper_arm, RECIPE)
-
-
-def test_folder_that_cannot_be_made_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, paper_arm: Scene
-) -> None:
-    (tmp_path / "file").touch()
-    monkeypatch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path / "file" / "kernels"))
-    monkeypatch.setattr(codegen, "_loaded", {})
-    with pytest.raises(KernelCacheError, match="CONTINUUM_DYN_CACHE"):
-        codegen.load(paper_arm, RECIPE)
 
 
 def test_size_of_the_generated_source_does_not_depend_on_the_number_of_disks() -> None:

@@ -34,6 +34,8 @@ SLOW = {
     "README.md",
     "docs/how_to/accuracy.md",
     "docs/how_to/hard_cases.md",
+    "docs/how_to/logs.md",
+    "docs/how_to/scenario.md",
     "docs/how_to/settling.md",
     "docs/how_to/tension_ramp.md",
     "docs/theory/rone2012.md",

@@ -111,11 +111,11 @@ def test_modes_know_what_drives_the_scene(shaken: Scenario) -> None:
 
 def test_ramp_takes_no_profile_of_a_factor(shaken: Scenario) -> None:
     with pytest.raises(InputError, match="lists of tensions and load factors, or numbers"):
-        replace(shaken, study=RampStudy(), tension=((0.0, 1.0),))
+        replace(shaken, study=RampStudy(), drives=((0.0, 1.0),))
 
 
 def test_ramp_takes_lists_of_factors_as_long_as_those_of_tensions(shaken: Scenario) -> None:
-    ramp = replace(shaken, study=RampStudy(), tension=((1.0, 1.0),), load_factors=((0.5, 1.0),))
+    ramp = replace(shaken, study=RampStudy(), drives=((1.0, 1.0),), load_factors=((0.5, 1.0),))
     factors = [point.load_factor for point in simulate(ramp).equilibria]
     np.testing.assert_array_equal(factors, [[0.5], [1.0]])
     with pytest.raises(InputError, match="equal length; they have 2, 3 entries"):

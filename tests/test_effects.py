@@ -6,24 +6,20 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import UPPER
+from one_of_each import ONE_OF_EACH
 from whole_arm import random_state
 
 from continuum_dyn import motion_kernel
 from continuum_dyn.effects import (
     EFFECTS,
-    Inertia,
     LinearDrag,
     MassDamping,
     MaterialDamping,
     QuadraticDrag,
-    RotaryInertia,
 )
 from continuum_dyn.virtual_power import derive_dynamics, partial_velocity
 from statics import (
     Arm,
-    Bending,
-    CableFriction,
-    Cables,
     DiskLoad,
     DiskLoads,
     Extension,
@@ -40,20 +36,6 @@ from statics.segment import DiskSymbols, SegmentSymbols
 from statics.virtual_work import collect, partial_displacement
 
 ARM = Arm.preset("rone2012", cables=(replace(UPPER, friction=0.2),))
-ONE_OF_EACH: tuple[Effect, ...] = (
-    Bending(),
-    Extension(),
-    Gravity(),
-    Cables(),
-    CableFriction(),
-    DiskLoads(loads=(DiskLoad(4, (0.1, -0.2), 0.3),)),
-    Inertia(),
-    RotaryInertia(),
-    MaterialDamping(1e-3),
-    MassDamping(2.0),
-    LinearDrag(0.02, 1e-6),
-    QuadraticDrag(0.3, 1e-8),
-)
 WITHOUT_EFFECT: tuple[Effect, ...] = (
     Gravity((0.0, 0.0)),
     DiskLoads(loads=(DiskLoad(4),)),

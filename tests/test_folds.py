@@ -100,7 +100,7 @@ def test_plain_ramp_tells_where_it_jumps(scenario: Scenario, followed: Run) -> N
 
 def test_ramp_up_and_down_jumps_at_the_one_fold_and_at_the_other(scenario: Scenario) -> None:
     up = scenario.ramps[0]
-    both = replace(scenario, tension=((*up, *up[-2::-1]),), study=RampStudy())
+    both = replace(scenario, drives=((*up, *up[-2::-1]),), study=RampStudy())
     jumps = [point for point in simulate(both).equilibria if point.jumped]
     assert [
         (point.tension[0], round(float(point.lost_at.tension[0]), 3)) for point in jumps if point.lost_at

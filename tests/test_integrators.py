@@ -161,7 +161,7 @@ def test_work_is_counted_in_segment_evaluations(step_response: Scenario) -> None
 
 def by_solve_ivp(scenario: Scenario, **options: Any) -> Any:
     dynamics, (span,) = Dynamics(scenario.scene), spans(scenario.profiles, 0.2)
-    y = dynamics.state(equilibrium(scenario.scene, scenario.initial_tension).coordinates)
+    y = dynamics.state(equilibrium(scenario.scene, scenario.initial_inputs).coordinates)
     asked = {"dynamics": dynamics, "spans": [span], "tolerance": 1e-8, "first_step": 1e-4}
     return solve_ivp(lambda t, y: dynamics.rate(t, y, span), (0.0, 0.2), y, ChainSolver, **asked, **options)
 

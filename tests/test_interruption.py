@@ -2,17 +2,26 @@
 
 import os
 import signal
+from concurrent.futures import ThreadPoolExecutor
+from math import inf
 from pathlib import Path
 from random import Random
 
 import pytest
 from conftest import SCENARIOS
-from interrupting import Interrupted, interrupted
+from interrupting import Interrupted, at_call, interrupted, left_over
+from typer.testing import CliRunner
 
+from continuum_dyn.cli import app
+from continuum_dyn.record import read_log
 from statics import Outcome
 from statics.interruption import allowed, held
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
+
+MOMENTS = 100
+WITHOUT_CACHE = 50
+"""One of so many moments lies in a run that makes its kernels anew."""
 
 
 def press() -> None:
@@ -25,6 +34,15 @@ def long_motion(folder: Path) -> Path:
     drive = '"sine", mean = 1.0, amplitude = 0.9, frequency = 20.0'
     path = folder / "long.toml"
     path.write_text(text.replace('"step", before = 0.0, after = 1.0', drive))
+    return path
+
+
+def long_ramp(folder: Path) -> Path:
+    """From 0 to 2 N in a thousand points."""
+    text = (SCENARIOS / "tension_ramp.toml").read_text()
+    path, points = folder / "ramp.toml", [number / 500 for number in range(1001)]
+    path.write_text(text.replace("[0.0, 0.05, 0.1, 0.5, 1.0, 2.0]", str(points)))
+    assert path.read_text() != text
     return path
 
 
@@ -41,15 +59,66 @@ def check(found: Interrupted, finished: tuple[Outcome, ...] = ()) -> None:
         assert found.log.outcome is Outcome.INTERRUPTED
 
 
+@pytest.mark.parametrize(
+    ("name", "place", "call", "outcome", "told"),
+    [
+        ("tension_ramp", "statics.ramp:_continued", 2, "interrupted", "after 3 of 6 points"),
+        ("snap_through", "statics.arc_length:_Follower._step", 5, "interrupted", "interrupted at"),
+        ("step_response", "continuum_dyn.scenario:_build", 1, None, ""),
+        ("step_response", "statics.equilibria:StaticSolver.solve", 2, "interrupted", "before the motion"),
+        ("step_response", "continuum_dyn.simulation:_moved", 1, "interrupted", "interrupted at t ="),
+        ("step_response", "continuum_dyn.simulation:_end", 1, "settled", ""),
+        (
+            "slow_ramp",
+            "continuum_dyn.simulation:_static_path",
+            1,
+            "interrupted",
+            "after the motion, 0 points",
+        ),
+        ("step_response", "continuum_dyn.record:_write_arm", 1, "settled", ""),
+        ("step_response", "continuum_dyn.views.rerun_view:_recording", 1, "settled", ""),
+        ("step_response", "continuum_dyn.commands.run:_show", 1, "settled", ""),
+    ],
+)
+def test_interrupted_in_each_of_its_stages(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    place: str,
+    call: int,
+    outcome: str | None,
+    told: str,
+) -> None:
+    """What was through by then is logged as such."""
+    at_call(place, call, press, monkeypatch.setattr)
+    scenario, folder = SCENARIOS / f"{name}.toml", tmp_path / "out"
+    result = CliRunner().invoke(app, ["run", str(scenario), "--out", str(folder)])
+    assert result.exit_code == 130
+    if outcome is None:
+        assert not folder.exists()
+        return
+    log = read_log(folder / f"{name}.h5")
+    assert (log.outcome, told in log.message) == (outcome, True)
+    assert (folder / f"{name}.rrd").exists()
+    assert not left_over(folder, scenario)
+
+
+def test_interrupted_while_it_is_loaded_it_ends_in_a_word(tmp_path: Path) -> None:
+    found = interrupted(SCENARIOS / "step_response.toml", tmp_path / "out")
+    assert (found.status, found.errors, found.log, found.left_over) == (130, "interrupted\n", None, [])
+
+
 def test_interrupted_motion_is_logged_up_to_there(tmp_path: Path) -> None:
-    found = interrupted(long_motion(tmp_path), tmp_path / "out", 6.0)
+    place = "continuum_dyn.integrators.guard:Monitor.after_step"
+    found = interrupted(long_motion(tmp_path), tmp_path / "out", place=place, call=20)
     check(found)
     assert found.log is not None
     assert found.log.trajectory["time"][-1] > 0
 
 
 def test_interrupted_while_compiling_leaves_a_log_that_says_so(tmp_path: Path) -> None:
-    found = interrupted(long_motion(tmp_path), tmp_path / "out", 2.5, "--no-cache")
+    place = "statics.codegen:_module"
+    found = interrupted(long_motion(tmp_path), tmp_path / "out", "--no-cache", place=place)
     check(found)
     assert found.log is not None
     assert "before" in found.log.message
@@ -57,17 +126,26 @@ def test_interrupted_while_compiling_leaves_a_log_that_says_so(tmp_path: Path) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("number", "options"),
-    [*((number, ()) for number in range(20)), *((number, ("--no-cache",)) for number in range(4))],
-)
-def test_interrupted_at_any_time(tmp_path: Path, number: int, options: tuple[str, ...]) -> None:
-    rng = Random(number)
-    static = SCENARIOS / "tension_ramp.toml"
-    scenario = rng.choice([SCENARIOS / "step_response.toml", long_motion(tmp_path), static])
-    after = rng.uniform(0.0, 25.0 if options and scenario != static else 4.0)
-    found = interrupted(scenario, tmp_path / "out", after, *options)
-    check(found, finished=(Outcome.SETTLED, Outcome.COMPLETED))
+def test_interrupted_at_any_of_many_random_moments(tmp_path: Path) -> None:
+    """They are drawn over the whole of a run, as long as that takes beside another one."""
+    finite = [SCENARIOS / "step_response.toml", long_ramp(tmp_path)]
+
+    def whole(scenario: Path) -> float:
+        return interrupted(scenario, tmp_path / f"whole_{scenario.stem}", after=inf).seconds
+
+    def at_a_moment(number: int) -> Interrupted:
+        rng = Random(number)
+        options = ("--no-cache",) if number % WITHOUT_CACHE == 0 else ()
+        scenario, length = rng.choice(runs)
+        return interrupted(scenario, tmp_path / f"out_{number}", *options, after=rng.uniform(0.0, length))
+
+    with ThreadPoolExecutor(2) as pool:
+        lengths = list(pool.map(whole, finite))
+        runs = [*zip(finite, lengths, strict=True), (long_motion(tmp_path), lengths[0])]
+        found = list(pool.map(at_a_moment, range(MOMENTS)))
+    for each in found:
+        check(each, finished=(Outcome.SETTLED, Outcome.COMPLETED))
+    assert {each.log is None for each in found} == {True, False}
 
 
 def test_what_holds_ctrl_c_comes_to_its_end() -> None:

@@ -52,6 +52,18 @@ def test_slack_cable_is_none() -> None:
     np.testing.assert_allclose(found.coordinates, without.coordinates, rtol=1e-12, atol=1e-18)
 
 
+@pytest.mark.parametrize("gravity", [(0.0, 2e-4), (0.25, 0.0)])
+def test_cable_that_catches_in_the_last_step_of_the_search_is_in_balance(
+    gravity: tuple[float, float],
+) -> None:
+    """One step leads to rest from straight, where the cables are on the verge of slack."""
+    cables = tuple(Cable(f"{r}", r, cable_stiffness=500.0) for r in (0.007, -0.005))
+    scene = Scene(driven(*cables, disks=1).arm, (Bending(), Extension(), Gravity(gravity), Cables()))
+    found = at_rest(scene, 0.0, 0.0)
+    assert 0.0 < found.tension.max() < 1e-6  # N
+    assert found.residual < 1e-14  # N, N m
+
+
 @pytest.mark.parametrize("displacement", [5e-4, 2e-3, 4e-3])
 def test_arm_rests_as_under_the_tension_that_the_length_makes(displacement: float) -> None:
     found = at_rest(driven(BY_LENGTH), displacement)
@@ -94,7 +106,7 @@ def test_motion_with_a_cable_that_goes_slack_and_catches_keeps_its_ledger() -> N
 def test_jump_of_the_length_puts_its_work_into_the_ledger() -> None:
     scenario = load_scenario(SCENARIOS / "length_driven.toml")
     steps = (Step(0.0, 5e-4, at=0.01), Step(0.0, -1e-3, at=0.01))
-    motion = simulate(replace(scenario, tension=steps)).trajectory
+    motion = simulate(replace(scenario, drives=steps)).trajectory
     assert motion is not None
     work = motion.ledger["input_work"]
     assert np.diff(work).max() > 0.5 * STIFFNESS * 4e-4**2

@@ -3,7 +3,7 @@
 import os
 import signal
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -137,6 +137,25 @@ def test_budget_of_seconds_ends_a_step_that_goes_on(method: Method) -> None:
     assert run.trajectory.counters["steps"] == 0
 
 
+@pytest.mark.parametrize("path", ["stable", "arc_length"])
+def test_budget_of_seconds_ends_a_ramp(path: Literal["stable", "arc_length"]) -> None:
+    ramp = Scenario(rone2012(), (tuple(np.linspace(0.0, 2.0, 20)),), RampStudy(path=path))
+    run = simulate(ramp, budget=Budget(seconds=0.0))
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "0 s used up" in run.message
+    assert len(run.equilibria) < 20
+
+
+def test_budget_of_seconds_counts_the_static_path_of_a_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here the motion leaves nothing of it."""
+    monkeypatch.setattr(Budget, "spent_on", lambda *_: iter(()))
+    scenario = Scenario(moving(rone2012()), (Constant(1.0),), MotionStudy(0.01, samples=9, static_path=True))
+    run = simulate(scenario)
+    assert run.outcome is Outcome.BUDGET_EXCEEDED
+    assert "after the motion, 0 points" in run.message
+    assert_kept(run, 0.01)
+
+
 @pytest.mark.parametrize("method", ["LSODA", "Radau", "BDF"])
 def test_forces_that_are_not_numbers_end_as_diverged(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     plain_rate = Dynamics.rate
@@ -199,7 +218,7 @@ def test_exit_status_follows_the_outcome(outcome: str, status: int) -> None:
 
 @pytest.mark.parametrize("tension", [(), (Constant(1.0), Constant(1.0))])
 def test_scenario_needs_a_tension_for_each_cable(tension: tuple[Profile, ...]) -> None:
-    with pytest.raises(InputError, match="tensions given for 1 cable"):
+    with pytest.raises(InputError, match="tensions or displacements given for 1 cable"):
         Scenario(rone2012(), tension, MotionStudy(1.0))
 
 

@@ -51,7 +51,7 @@ def test_keys_lead_through_tables_and_through_lists_by_name() -> None:
     changes = ["arm.disks=16", "cables.upper.tension.amplitude=0.5", "cables.lower.tension=2"]
     scenario = load_scenario(TWO_CABLES, changes)
     assert scenario.scene.arm.disks == 16
-    assert scenario.tension == (Sine(1.0, 0.5, 2.0), Constant(2.0))
+    assert scenario.drives == (Sine(1.0, 0.5, 2.0), Constant(2.0))
 
 
 def test_a_list_entry_without_a_name_is_called_by_its_number() -> None:
@@ -64,7 +64,7 @@ def test_values_are_typed_as_in_toml_and_a_word_needs_no_quotes() -> None:
     profile = "{ profile = 'step', before = 1.0, after = 0, at = 1e-1 }"
     changes = [f"cables.upper.tension={profile}", "solver.method=Radau", 'title="two = words"']
     scenario = load_scenario(STEP, changes)
-    assert scenario.tension == (Step(1.0, 0.0, 0.1),)
+    assert scenario.drives == (Step(1.0, 0.0, 0.1),)
     assert (scenario.solver.method, scenario.title) == ("Radau", "two = words")
     assert load_scenario(STEP, ["effects.gravity.acceleration=[0.0, 0.0]"]).scene.has("gravity")
     (cable,) = load_scenario(STEP, ["cables.'upper'.hole_offset = 0.004"]).scene.arm.cables

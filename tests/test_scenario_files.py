@@ -142,7 +142,7 @@ def test_table_that_cannot_be_is_refused_with_its_row(tmp_path: Path, rows: str,
 def test_table_beside_the_scenario_is_read(tmp_path: Path) -> None:
     (tmp_path / "table.csv").write_text("time, tension\n0.0, 0.5\n\n1.0, 2.0\n")
     text = GOOD.replace('"step", before = 0.0, after = 1.0', '"table", file = "table.csv"')
-    assert load_scenario(write(tmp_path, text)).tension == (Table((0.0, 1.0), (0.5, 2.0)),)
+    assert load_scenario(write(tmp_path, text)).drives == (Table((0.0, 1.0), (0.5, 2.0)),)
 
 
 def test_what_is_given_beats_the_preset_and_core_radius_sets_the_section(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """A log that is written while the motion is computed: what is on disk at any moment, and in the end."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import h5py
@@ -27,7 +28,7 @@ def _told_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 def scenario() -> Scenario:
     """The arm of the step response, driven up and down all the time."""
     given = load_scenario(SCENARIOS / "step_response.toml")
-    return replace(given, tension=(Sine(1.0, 0.9, 20.0),), study=MotionStudy(1.0, samples=1501))
+    return replace(given, drives=(Sine(1.0, 0.9, 20.0),), study=MotionStudy(1.0, samples=1501))
 
 
 class Watched(StreamedLog):
@@ -38,6 +39,7 @@ class Watched(StreamedLog):
         self.seen: list[Log] = []
 
     def add(self, block: Trajectory) -> None:
+        """Append it, and read."""
         super().add(block)
         self.seen.append(read_log(self.part))
 
@@ -90,7 +92,7 @@ def test_blocks_of_any_size_make_the_same_log(scenario: Scenario, tmp_path: Path
     with StreamedLog(tmp_path / "log.h5") as sink:
         sink.begin(replace(run, trajectory=None))
         edges = [0, 1, 511, 512, 1024, 1024 + 700, 1025 + 700, 3000]
-        for first, last in zip(edges, edges[1:], strict=False):
+        for first, last in pairwise(edges):
             sink.add(run.trajectory.first(last).after(first))
         sink.finish(run)
     assert_same(read_log(tmp_path / "log.h5"), read_log(tmp_path / "whole.h5"))

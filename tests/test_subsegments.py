@@ -114,7 +114,7 @@ def test_nodes_without_mass_are_the_limit_of_light_ones() -> None:
 
 def test_start_without_accelerations_keeps_the_order() -> None:
     """A jump of the tension, and with it of the massless nodes' rates: errors still follow the tolerance."""
-    scenario = replace(drive(moving(meshed(3))), tension=(Step(0.0, 1.0),))
+    scenario = replace(drive(moving(meshed(3))), drives=(Step(0.0, 1.0),))
     exact = motion(replace(scenario, solver=Solver("chain", 1e-12, 1e-15)))
     found = [motion(replace(scenario, solver=Solver("chain", rtol, 1e-15))) for rtol in (1e-6, 1e-8, 1e-10)]
     distances = [tip_distance(trajectory, exact) for trajectory in found]
@@ -194,7 +194,7 @@ def test_mesh_that_the_budget_does_not_allow_ends_as_such() -> None:
 
 
 def test_cost_of_a_scene_with_massless_nodes_says_what_to_give() -> None:
-    scenario = replace(drive(moving(meshed(2))), tension=(Step(0.0, 1.0),))
+    scenario = replace(drive(moving(meshed(2))), drives=(Step(0.0, 1.0),))
     with pytest.raises(InputError, match="core_density"):
         cost.measure(scenario)
 

@@ -69,7 +69,7 @@ class Case:
         self.stretches = spans(self.scenario.profiles, self.duration)
         self.tension = float(self.stretches[-1].inputs(self.samples[-1:])[0, 0])
         self.dynamics = Dynamics(self.scenario.scene)
-        self.rest = equilibrium(self.scenario.scene, self.scenario.initial_tension).coordinates
+        self.rest = equilibrium(self.scenario.scene, self.scenario.initial_inputs).coordinates
 
     def tip(self, solver: Solver) -> np.ndarray:
         """This program's answer."""

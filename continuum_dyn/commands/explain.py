@@ -25,7 +25,7 @@ def explain(
     latex: Annotated[bool, typer.Option("--latex", help="Equations as LaTeX.")] = False,
     measure: Annotated[bool, typer.Option("--measure", help="Measure what can be left out.")] = False,
 ) -> None:
-    """Show the effects in play, what each adds, the modes at rest, and the equations.
+    """Show what each effect adds, the modes at rest, and the equations.
 
     With --measure a motion is run without each effect in turn, to say which of them can be left out at the
     accuracy that is asked for, and what time they cost. The first time each of these is compiled, which
@@ -89,7 +89,7 @@ def _print_method(scenario: Any) -> None:
     if not isinstance(scenario.study, MotionStudy) or scenario.solver.method != "auto":
         return
     dynamics = Dynamics(scenario.scene)
-    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_tension).coordinates)
+    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_inputs).coordinates)
     duration, exact = scenario.study.duration, scenario.accuracy is not None
     choice = choose(dynamics, start, spans(scenario.profiles, duration)[0], duration, exact)
     typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))

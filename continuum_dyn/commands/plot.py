@@ -17,9 +17,7 @@ def plot(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log.", show_default=False)],
     parts: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[PART]...", help="Of shapes, tip, energies; by default all.", show_default=False
-        ),
+        typer.Argument(metavar="PART", help="Of shapes, tip, energies; by default all.", show_default=False),
     ] = None,
     out: Annotated[
         Path | None,

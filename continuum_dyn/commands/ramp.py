@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Folder
 from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
 from continuum_dyn.commands.show import duration, energy, length, make_folder, plain_table, with_status
 from statics.errors import InputError
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 def ramp(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a ramp.", show_default=False)],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the picture.")] = Path("logs"),
+    out: Folder = Path("logs"),
     error: Annotated[
         float, typer.Option(metavar="LENGTH", help="Lag (m) up to which a ramp counts as quasistatic.")
     ] = 1e-4,

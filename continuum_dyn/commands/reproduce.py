@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def reproduce(
-    paper: Annotated[str, typer.Argument(metavar="PAPER", help="rone2012", show_default=False)],
+    paper: Annotated[str, typer.Argument(metavar="PAPER", help="Which paper: rone2012.", show_default=False)],
     out: Folder = Path("logs"),
 ) -> None:
     """Compute a paper's numbers again.

@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from continuum_dyn.commands.run import Job, answer
-from continuum_dyn.record.log_format import UNFINISHED
 
 
 def resume(
@@ -29,6 +28,7 @@ def resume(
     from continuum_dyn.logged_motion import logged_motion
     from continuum_dyn.logged_scenario import logged_scenario
     from continuum_dyn.record import read_log
+    from continuum_dyn.record.log_format import UNFINISHED
 
     unfinished = log.with_name(log.name + UNFINISHED)
     found = read_log(unfinished if not log.exists() and unfinished.exists() else log)

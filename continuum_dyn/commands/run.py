@@ -14,6 +14,7 @@ import typer
 from continuum_dyn.commands.arguments import Folder, Overrides
 from continuum_dyn.commands.show import length, make_folder
 from continuum_dyn.commands.verbosity import shows_progress
+from continuum_dyn.extras import MissingExtraError, extras_named
 from statics.errors import InputError
 from statics.interruption import held
 from statics.stages import stage
@@ -84,9 +85,10 @@ def _load(files: list[Path], overrides: Sequence[str], out: Path) -> list[Job]:
 
 
 def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
-    from continuum_dyn.logged_scenario import logged_scenario
-    from continuum_dyn.record import read_log
-    from continuum_dyn.scenario import load_scenario
+    with held():  # what Ctrl-C breaks off within the import of a library might come out as anything
+        from continuum_dyn.logged_scenario import logged_scenario
+        from continuum_dyn.record import read_log
+        from continuum_dyn.scenario import load_scenario
 
     if path.suffix != ".h5":
         return Job(path, load_scenario(path, overrides), out / f"{path.stem}.h5")
@@ -111,7 +113,6 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     from continuum_dyn.log_comparison import compare
     from continuum_dyn.record import StreamedLog, read_log
     from continuum_dyn.simulation import simulate
-    from continuum_dyn.views.playback import recording as playback
 
     started = time.perf_counter()
     with StreamedLog(job.log) as streamed:
@@ -119,18 +120,31 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
             result = simulate(job.scenario, progress, sink=streamed, begun=job.begun)
         with stage("log written"):
             streamed.finish(result)
-    log, recording = read_log(job.log), job.log.with_suffix(".rrd")
+    log = read_log(job.log)
     with stage("recording written"):
-        playback.save([log], recording)
+        recording, without = _recording(log)
     wall_time = time.perf_counter() - started
     comparison = None if job.earlier is None else compare(job.earlier, log)
     record = _record(job.source, result, job.log, recording, wall_time)
     if comparison is not None:
         record["compared"] = asdict(comparison) | {"same": comparison.same}
-    return {"run": result, "log": job.log, "record": record, "comparison": comparison, "source": job.source}
+    told = {"comparison": comparison, "source": job.source, "without_recording": without}
+    return {"run": result, "log": job.log, "record": record} | told
 
 
-def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: float) -> dict[str, Any]:
+def _recording(log: "Log") -> tuple[Path | None, str]:
+    """The recording that is written beside a log; or none, and why."""
+    try:
+        with extras_named():
+            from continuum_dyn.views.playback import recording as playback
+    except MissingExtraError as missing:
+        return None, str(missing)
+    recording = log.path.with_suffix(".rrd")
+    playback.save([log], recording)
+    return recording, ""
+
+
+def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_time: float) -> dict[str, Any]:
     """What ``--json`` prints; ``tip`` is x, y (m), theta (rad), times are in s, ``static_gap`` in m."""
     arm = result.scenario.scene.arm
     record: dict[str, Any] = {
@@ -145,7 +159,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
         "solve_time": result.solve_time,
         "wall_time": wall_time,
         "log": str(log),
-        "recording": str(recording),
+        "recording": None if recording is None else str(recording),
     }
     if result.trajectory is not None:
         record["method"] = result.solver.method if result.solver else None
@@ -171,7 +185,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path, wall_time: fl
 
 @contextmanager
 def _progress(title: str, quiet: bool) -> Iterator[Any]:
-    """A progress bar on a terminal; it only pulses while kernels are compiled, which happens once."""
+    """A progress bar on a terminal; while kernels are compiled it only pulses, and says why."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -181,13 +195,13 @@ def _progress(title: str, quiet: bool) -> Iterator[Any]:
         return
     latest = time.monotonic()
     with Progress(console=console, transient=True) as bar:
-        task = bar.add_task(title, total=None)
+        task = bar.add_task(f"{title}: loading its kernels, or compiling new ones", total=None)
 
         def update(fraction: float) -> None:
             nonlocal latest
             if time.monotonic() - latest > BAR_INTERVAL:
                 latest = time.monotonic()
-                bar.update(task, total=1.0, completed=fraction)
+                bar.update(task, description=title, total=1.0, completed=fraction)
 
         yield update
 
@@ -218,7 +232,11 @@ def _show(report: dict[str, Any]) -> None:
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     if report["comparison"] is not None:
         table.add_row("compared", _compared(report["comparison"], report["source"]))
-    table.add_row("log", f"{report['log']}  (play it: continuum-dyn play {report['log']})")
+    table.add_row("log", str(report["log"]))
+    if report["without_recording"]:
+        table.add_row("recording", f"none; {escape(report['without_recording'])}")
+    else:
+        table.add_row("play it", f"continuum-dyn play {report['log']}")
     console = Console(highlight=False)
     console.print(table)
     points = [point for point in result.equilibria if point.found]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.arguments import Folder
 from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
 from continuum_dyn.commands.show import duration, length, make_folder, plain_table
 from statics.interruption import held
@@ -19,7 +20,7 @@ CLEAR_MISFIT = 0.05
 
 def settle(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a motion.", show_default=False)],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the picture.")] = Path("logs"),
+    out: Folder = Path("logs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     assertions: Annotated[
         list[str] | None,

@@ -1,8 +1,11 @@
 """What the commands share: a length or a time in its best unit, a plain table, progress, a folder."""
 
+import sys
 from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
 from continuum_dyn.commands.verbosity import shows_progress
@@ -43,6 +46,15 @@ def mode_row(mode: "Mode") -> tuple[str, str, str]:
     decay_time = duration(abs(mode.decay_time)) if isfinite(mode.decay_time) else "never"
     grows = "grows e-fold in " if mode.grows else ""
     return f"{mode.frequency:.5g} Hz", f"{mode.damping_ratio:.3g}{kind}", f"{grows}{decay_time}"
+
+
+def wrapped(message: str) -> str:
+    """A message of the program with its lines broken at words, where standard error is a terminal."""
+    if not sys.stderr.isatty():
+        return message
+    lines = TextWrapper(get_terminal_size().columns, subsequent_indent="  ")
+    lines.break_long_words = lines.break_on_hyphens = False  # of paths, options and commands
+    return "\n".join(map(lines.fill, message.splitlines()))
 
 
 def make_folder(folder: Path) -> None:

@@ -5,9 +5,9 @@ SciPy's solvers have none of these. A guarded one fails at the first step that b
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.integrate import OdeSolver
@@ -16,6 +16,8 @@ from continuum_dyn.study import Solver
 from statics.interruption import Interruption
 from statics.outcome import Outcome
 
+Item = TypeVar("Item")
+
 
 @dataclass(frozen=True)
 class Budget:
@@ -23,6 +25,17 @@ class Budget:
 
     steps: int = Solver.max_steps
     seconds: float = Solver.max_seconds
+
+    def is_spent(self, started: float) -> bool:
+        """Whether the seconds from ``started``, a time of ``time.monotonic``, are used up."""
+        return time.monotonic() - started > self.seconds
+
+    def spent_on(self, items: Iterable[Item], started: float) -> Iterator[Item]:
+        """The items that come before the seconds from ``started`` are used up."""
+        for item in items:
+            if self.is_spent(started):
+                return
+            yield item
 
 
 class StepAbandonedError(Exception):
@@ -77,7 +90,7 @@ class Monitor:
     def _out_of_time(self, t: float) -> bool:
         if self.interruption.asked:
             self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
-        elif time.monotonic() - self.started > self.budget.seconds:
+        elif self.budget.is_spent(self.started):
             self.stop(Outcome.BUDGET_EXCEEDED, f"{self.budget.seconds:g} s used up by t = {t:.6g} s")
         else:
             return False

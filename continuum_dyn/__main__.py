@@ -1,0 +1,27 @@
+"""Where ``continuum-dyn`` and ``python -m continuum_dyn`` begin: ready for Ctrl-C before all else."""
+
+import os
+import signal
+
+INTERRUPTED = 130
+
+
+def _end_at_once(_signal: int, _frame: object) -> None:
+    os.write(2, b"interrupted\n")
+    os._exit(INTERRUPTED)
+
+
+def main() -> None:
+    """Load the command line, and run it.
+
+    Until it is loaded there is nothing to keep, and Ctrl-C ends the program at once: raised within the import
+    of a library, it might come out as anything.
+    """
+    signal.signal(signal.SIGINT, _end_at_once)
+    from continuum_dyn.cli import main
+
+    main()
+
+
+if __name__ == "__main__":
+    main()
