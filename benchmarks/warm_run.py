@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "step_response.toml"
-RUN = "from continuum_dyn.cli import main; main()"
+RUN = "from continuum_dyn.__main__ import main; main()"
 IMPORTS = "import numpy, scipy.integrate, numba, h5py, rerun, pydantic, typer, rich.table"
 REPEATS = 5
 WITHIN = 3.0

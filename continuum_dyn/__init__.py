@@ -1,4 +1,7 @@
-"""Dynamics of planar cable-driven continuum arms by virtual power (Kane's method)."""
+"""Dynamics of planar cable-driven continuum arms by virtual power (Kane's method).
+
+What is exported is loaded when it is first asked for.
+"""
 
 from typing import TYPE_CHECKING
 

@@ -36,8 +36,10 @@ def told_of_points(points: Sequence[Equilibrium]) -> str:
     told = []
     for before, point in zip((None, *points), points, strict=False):
         if point.lost_at is not None and before is not None:
-            lost = point.lost_at
-            told.append(f"jumps between points {before.drive} and {point.drive}: {_what_happens(lost)}")
+            way = "jumps" if point.jumped else "goes on along another path"
+            told.append(
+                f"{way} between points {before.drive} and {point.drive}: {_what_happens(point.lost_at)}"
+            )
         elif point.left:
             ways = point.left[-1].unstable_directions
             told.append(f"{point.drive} left an equilibrium that is unstable in {ways} directions")

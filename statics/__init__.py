@@ -1,4 +1,7 @@
-"""Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012)."""
+"""Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012).
+
+What is exported is loaded when it is first asked for.
+"""
 
 from typing import TYPE_CHECKING
 

@@ -31,6 +31,10 @@ EASY = 4
 """Corrections up to which the next step is longer."""
 LEAST_COSINE = 0.95
 """Of the angle between two tangents in a row; below it the step is tried again at half its length."""
+MOST_OFF = 0.1
+"""Likewise of the straight way of a step from the mean of its tangents: else the step has left the path."""
+SHORTEST_HIDING = 1e-3
+"""Likewise steps longer than this that seem to hide two folds: what snaps by less may be taken for smooth."""
 HALF_DIFFERENCE = 0.5
 """Of places on the ramp, for the residual's derivative by the place: it is linear in tensions and factors."""
 NEAR_LIMIT = 1e-3
@@ -176,7 +180,18 @@ class ArcLength:
         self, q: np.ndarray, place: float, towards: tuple[np.ndarray, float], corrections: int = 0
     ) -> _Place:
         """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
-        by_place, negative, clearance = self.tangent_at(q, place, backwards=towards[1] < 0.0)
+        return self._with_tangent(q, place, towards, corrections, backwards=towards[1] < 0.0)
+
+    def _with_tangent(
+        self,
+        q: np.ndarray,
+        place: float,
+        towards: tuple[np.ndarray, float],
+        corrections: int = 0,
+        *,
+        backwards: bool,
+    ) -> _Place:
+        by_place, negative, clearance = self.tangent_at(q, place, backwards)
         length = np.sqrt(self.inner(by_place, by_place) + 1.0)
         ahead = self.inner(by_place, towards[0]) + towards[1] >= 0.0
         length = length if ahead else -length
@@ -206,11 +221,16 @@ class ArcLength:
                 return self.place_at(q, place, (here.along, here.along_place), correction)
         return None
 
-    def at_point(self, near: _Place, point: float) -> _Place:
-        """The equilibrium at exactly a point of the ramp, from one within rounding of it; goes on."""
+    def at_point(self, near: _Place, point: float, way: float) -> tuple[_Place, _Place]:
+        """The equilibrium at exactly a point of the ramp, from one within rounding of it.
+
+        As the path comes to it and as it goes on, ``way`` 1 forwards or -1 backwards: the ramp may have a
+        corner there.
+        """
         residual, _ = self.residual(near.q, self.inputs(point))
         q = near.q + self.solve(residual)[0]
-        return self.place_at(q, point, (0.0 * q, near.along_place))
+        towards = 0.0 * q, way
+        return self._with_tangent(q, point, towards, backwards=way > 0.0), self.place_at(q, point, towards)
 
     def located(
         self, here: _Place, there: float, value: Callable[[_Place], float], within: float = LOCATED
@@ -278,7 +298,7 @@ class _Follower:
         """The next point of the path: a step on, or what comes first on its way; None if there is none."""
         while self.length > SHORTEST_STEP:
             length, there = self.length, self.arc.corrected(self.here, self.length)
-            if there is not None and self._is_smooth(there):
+            if there is not None:
                 if there.corrections <= EASY:
                     self.length = min(1.5 * self.length, LONGEST_STEP)
                 stepped = self._cut(there, length)
@@ -287,11 +307,15 @@ class _Follower:
             self.length = 0.5 * min(length, self.length)
         return None
 
-    def _is_smooth(self, there: _Place) -> bool:
-        """Whether the path turns little on the way; at the ramp's points it may have corners."""
-        here = self.here
-        cosine = self.arc.inner(here.along, there.along) + here.along_place * there.along_place
-        return cosine >= LEAST_COSINE or _point_between(here.place, there.place) is not None
+    def _is_smooth(self, there: _Place, length: float) -> bool:
+        """Whether the path turns little on the way, goes where its tangents say, and hides no two folds."""
+        here, inner = self.here, self.arc.inner
+        cosine = inner(here.along, there.along) + here.along_place * there.along_place
+        off = (there.q - here.q) / length - 0.5 * (here.along + there.along)
+        off_place = (there.place - here.place) / length - 0.5 * (here.along_place + there.along_place)
+        if cosine < LEAST_COSINE or np.sqrt(inner(off, off) + off_place**2) > MOST_OFF:
+            return False
+        return length < SHORTEST_HIDING or not _hides_folds(here, there, length)
 
     def _cut(self, there: _Place, length: float) -> tuple[_Place, Critical, bool] | None:
         """A step up to the first of what it passes: a limit, a point of the ramp, a fold, a branching."""
@@ -299,12 +323,15 @@ class _Follower:
         if there.clearance < search.AT_LIMIT:
             cut = arc.located(here, length, lambda at: at.clearance - search.AT_LIMIT)
             return None if cut is None else (cut[0], Critical.NO, True)
-        point = _point_between(here.place, there.place)
+        point, come_to = _point_between(here.place, there.place), there
         if point is not None:
             cut = arc.located(here, length, lambda at: at.place - point)
             if cut is None:
                 return None
-            there, length = arc.at_point(cut[0], point), cut[1]
+            come_to, there = arc.at_point(cut[0], point, np.sign(there.place - here.place))
+            length = cut[1]
+        if not self._is_smooth(come_to, length):
+            return None
         before, beyond = here.negative, there.negative
         if (there.along_place > 0.0) != self.forwards:
             cut, critical = arc.located(here, length, lambda at: at.along_place), Critical.FOLD
@@ -338,6 +365,16 @@ class _Follower:
 
     def _ended(self, outcome: Outcome, message: str = "") -> Path:
         return Path(outcome, self.points, self.places, self._equilibrium(), message)
+
+
+def _hides_folds(here: _Place, there: _Place, length: float) -> bool:
+    """Whether the cubic with the slopes of the place at both ends turns back and forth between them."""
+    start, end = np.array([here.along_place, there.along_place]) * np.sign(here.along_place)
+    mean = (there.place - here.place) / length * np.sign(here.along_place)
+    bend, twist = 6.0 * mean - 4.0 * start - 2.0 * end, 3.0 * (start + end) - 6.0 * mean
+    if end <= 0.0 or twist <= 0.0 or not 0.0 < -bend < 2.0 * twist:
+        return False
+    return start - bend**2 / (4.0 * twist) < 0.0
 
 
 def _point_between(place: float, other: float) -> float | None:

@@ -51,7 +51,8 @@ class Equilibrium:
     it is not known: under loads without a potential, until the modes of small motion have been asked.
     ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
     ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from
-    the equilibrium before left the stable ones, if this one does not continue it.
+    the equilibrium before left the stable ones, if it did. Then this one has ``jumped``, unless it lies on a
+    path that branches off there.
     """
 
     outcome: Outcome
@@ -77,6 +78,7 @@ class Equilibrium:
     left: tuple["Equilibrium", ...] = ()
     critical: Critical = Critical.NO
     lost_at: "Equilibrium | None" = None
+    jumped: bool = False
 
     @property
     def found(self) -> bool:
@@ -89,11 +91,6 @@ class Equilibrium:
         if self.found and self.unstable_directions is None:
             return None
         return self.outcome is Outcome.COMPLETED
-
-    @property
-    def jumped(self) -> bool:
-        """Whether this equilibrium of a ramp does not continue the one before."""
-        return self.lost_at is not None
 
     @property
     def drive(self) -> str:

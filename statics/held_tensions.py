@@ -17,7 +17,8 @@ def count_held(
 ) -> None:
     """Number of directions, into ``negative``, shape (1,), that are unstable with the tensions held."""
     descent, pivots = np.empty_like(residual), np.empty((residual.shape[0], PIVOT_COLUMNS))
-    carried = (0.0, 0.0, 1.0, *ELIMINATE_HELD_START[3:])  # pivots keep their signs
+    keeping_signs = (0.0, 0.0, 1.0, *ELIMINATE_HELD_START[3:])
+    carried = keeping_signs  # numba takes an unpacked tuple for a name that is assigned once
     for i in range(residual.shape[0] - 1, -1, -1):
         carried = eliminate_held_step(i, carried, segments, disks, chain, residual, descent, pivots)
     negative[0] = carried[0]

@@ -124,7 +124,7 @@ disk_theta           | -     | rad    | angle of a disk's normal against the x a
 stable               | -     | 1      | 1 where the equilibrium is stable
 unstable_directions  | -     | 1      | number of independent directions in which an equilibrium is unstable
 critical             | -     | 1      | 1 where a path of equilibria turns back, 2 where it branches, else 0
-jumped               | -     | 1      | 1 where an equilibrium of a ramp does not continue the one before
+jumped               | -     | 1      | 1 where an equilibrium of a ramp is not reached from the one before along stable ones
 residual             | -     | N      | largest unbalanced generalized force, N or N m
 kinetic_energy       | -     | J      | kinetic energy of the masses
 elastic_energy       | -     | J      | energy stored in what is elastic: the core, by bending and extension

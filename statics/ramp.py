@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from statics.arc_length import ArcLength, hindrances
-from statics.equilibria import Equilibrium, Slip, StaticSolver
+from statics.arc_length import ArcLength, Path, hindrances
+from statics.equilibria import Critical, Equilibrium, Slip, StaticSolver
 from statics.outcome import Outcome
 from statics.scene import Scene
 
@@ -18,6 +18,8 @@ SMOOTH = 0.25
 """Difference of a path's slopes at two points from the way between them, over it: no closer look below."""
 SAME = 1e-6
 """Root of the summed squares of the changes of bend angle, rad, below which two equilibria are the same."""
+TOUCHING = 1e-3
+"""Likewise the ends of two paths that meet where one branches off the other: there the matrix is singular."""
 
 
 def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
@@ -25,7 +27,7 @@ def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
 
     Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
     starts from the last one that was. One that does not continue the one before has ``jumped``, and
-    ``lost_at`` says where. With friction the first is that of cables drawn in, and every other
+    ``lost_at`` says from where; it says likewise where the ramp goes on along a path that branches off. With friction the first is that of cables drawn in, and every other
     remembers the one before it. Raises ``InputError`` for tensions that do not fit.
     """
     return ramp(StaticSolver(scene), [scene.check_tension(tension) for tension in tensions])
@@ -73,11 +75,24 @@ def _continued(solver: StaticSolver, before: Equilibrium, point: Equilibrium) ->
         return point
     path = arc.follow(before, until_critical=True)
     if path.critical or path.outcome is not Outcome.COMPLETED:
-        return replace(point, lost_at=path.end)
+        return replace(point, lost_at=path.end, jumped=not _branches_off(solver, path, point))
     change = path.end.coordinates - point.coordinates
     if np.sqrt(arc.inner(change, change)) < SAME:
         return point
     return replace(path.end, iterations=point.iterations)
+
+
+def _branches_off(solver: StaticSolver, lost: Path, point: Equilibrium) -> bool:
+    """Whether the path back from a point ends where the path before it branches.
+
+    There that path only touches the inputs at which it branches off, which looks like a fold.
+    """
+    if lost.end.critical is not Critical.BRANCHING:
+        return False
+    arc = ArcLength(solver, np.array([point.inputs, lost.points[0].inputs]))
+    back = arc.follow(point, until_critical=True)
+    change = back.end.coordinates - lost.end.coordinates
+    return bool(back.critical) and bool(np.sqrt(arc.inner(change, change)) < TOUCHING)
 
 
 def _on_one_smooth_path(arc: ArcLength, before: Equilibrium, point: Equilibrium) -> bool:

@@ -1,6 +1,5 @@
 """What is heavy is an extra: without it the program runs, and says what is missing."""
 
-import importlib
 import json
 import sys
 from pathlib import Path
@@ -11,7 +10,7 @@ from typer.testing import CliRunner
 
 from continuum_dyn import views
 from continuum_dyn.cli import app
-from continuum_dyn.extras import EXTRAS, MissingExtraError
+from continuum_dyn.extras import EXTRAS
 from continuum_dyn.record import read_log
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
@@ -68,20 +67,3 @@ def test_what_needs_an_extra_names_it_before_anything_is_computed(
     assert result.stderr == (
         f"error: {package} is not installed: pip install 'continuum-dyn[{EXTRAS[package]}]'\n"
     )
-
-
-VIEWS = [
-    ("rerun", "rerun_view"),
-    ("matplotlib", "plots"),
-    ("matplotlib", "ramp_plot"),
-    ("matplotlib", "settling_plot"),
-]
-
-
-@pytest.mark.parametrize(("package", "module"), VIEWS)
-def test_views_raise_an_error_of_the_program(
-    package: str, module: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    remove(package, monkeypatch)
-    with pytest.raises(MissingExtraError, match=EXTRAS[package]):
-        importlib.import_module(f"continuum_dyn.views.{module}")

@@ -12,7 +12,7 @@ from continuum_dyn import Run, load_scenario, simulate
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.study import RampStudy, Scenario
 from continuum_dyn.views import log_plots
-from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path
+from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path, tension_ramp
 
 SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
 
@@ -108,6 +108,20 @@ def test_ramp_up_and_down_jumps_at_the_one_fold_and_at_the_other(scenario: Scena
         (4.5, 4.344),
         (1.0, 1.013),
     ]
+
+
+@pytest.mark.parametrize("points", [2, 51])
+def test_folds_close_together_are_passed_however_fine_the_ramp(scenario: Scenario, points: int) -> None:
+    """Hardly too heavy to stand: it snaps over by 0.3 rad, and back where the tension is 11 mN less."""
+    scene = scenario.scene
+    light = Scene(replace(scene.arm, disk_mass=0.775 * scene.arm.disk_mass), scene.effects)
+    tensions = np.linspace(2.6, 2.7, points)
+    path = follow_path(light, tensions)
+    assert [(at.critical, round(float(at.tension[0]), 3)) for at in path.critical] == [
+        (Critical.FOLD, 2.645),
+        (Critical.FOLD, 2.634),
+    ]
+    assert sum(point.jumped for point in tension_ramp(light, tensions)) == 1
 
 
 def test_picture_of_a_path_marks_its_folds(followed: Run, tmp_path: Path) -> None:

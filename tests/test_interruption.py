@@ -75,7 +75,7 @@ def check(found: Interrupted, finished: tuple[Outcome, ...] = ()) -> None:
             "interrupted",
             "after the motion, 0 points",
         ),
-        ("step_response", "continuum_dyn.record:_write_arm", 1, "settled", ""),
+        ("step_response", "continuum_dyn.record.streaming:StreamedLog.finish", 1, "settled", ""),
         ("step_response", "continuum_dyn.views.rerun_view:_recording", 1, "settled", ""),
         ("step_response", "continuum_dyn.commands.run:_show", 1, "settled", ""),
     ],
@@ -109,8 +109,8 @@ def test_interrupted_while_it_is_loaded_it_ends_in_a_word(tmp_path: Path) -> Non
 
 
 def test_interrupted_motion_is_logged_up_to_there(tmp_path: Path) -> None:
-    place = "continuum_dyn.integrators.guard:Monitor.after_step"
-    found = interrupted(long_motion(tmp_path), tmp_path / "out", place=place, call=20)
+    place = "continuum_dyn.record.streaming:StreamedLog.add"
+    found = interrupted(long_motion(tmp_path), tmp_path / "out", place=place, call=2)
     check(found)
     assert found.log is not None
     assert found.log.trajectory["time"][-1] > 0

@@ -91,6 +91,14 @@ def test_command_writes_what_the_suffix_says(suffix: str, magic: bytes, ramp: Lo
     assert picture.read_bytes().startswith(magic)
 
 
+def test_picture_that_cannot_be_written_is_told_without_a_traceback(ramp: Log, tmp_path: Path) -> None:
+    (tmp_path / "taken.png").mkdir()
+    result = runner.invoke(app, ["plot", str(ramp.path), "--out", str(tmp_path / "taken.png")])
+    assert result.exit_code == 2
+    assert "cannot write" in result.output
+    assert "Is a directory" in result.output
+
+
 def test_command_names_what_it_knows(ramp: Log) -> None:
     result = runner.invoke(app, ["plot", str(ramp.path), "shape"])
     assert result.exit_code == 2

@@ -102,6 +102,7 @@ def test_work_around_the_loop_is_what_the_ledger_dissipates(slow: RampAnswers, s
     assert slow.figures["static_tip_hysteresis"] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_lag_comes_to_the_error_at_the_rate_that_was_found_by_running(
     slow: RampAnswers, slow_log: Path
 ) -> None:

@@ -84,14 +84,19 @@ def test_number_of_unstable_directions_is_that_of_the_eigenvalues_passed() -> No
     assert rest.left[0].unstable_directions == 2  # Bessel's zeros: 7.84 and 55.98
 
 
-def test_ramp_leaves_the_straight_arm_where_a_path_branches_off_and_logs_both(tmp_path: Path) -> None:
+def test_ramp_goes_on_without_a_jump_where_a_path_branches_off_and_logs_both(tmp_path: Path) -> None:
     run = simulate(load_scenario(BUCKLING))
-    number, jump = next(numbered for numbered in enumerate(run.equilibria, start=1) if numbered[1].jumped)
-    assert jump.lost_at is not None
-    assert jump.lost_at.critical is Critical.BRANCHING
+    numbered = enumerate(run.equilibria, start=1)
+    number, bent = next((number, point) for number, point in numbered if point.lost_at is not None)
+    assert bent.lost_at is not None
+    assert bent.lost_at.critical is Critical.BRANCHING
+    assert not any(point.jumped for point in run.equilibria)
+    assert (
+        "goes on along another path between points at load factor 0.4 and at load factor 0.6" in run.message
+    )
     assert "another path branches off at load factor 0.56" in run.message
     write_log(run, tmp_path / "buckling.h5")
     points = read_log(tmp_path / "buckling.h5").equilibria
-    at_jump = points["point"] == number
-    assert points["stable"][at_jump].tolist() == [False, True]
-    assert points["jumped"][at_jump].tolist() == [False, True]
+    there = points["point"] == number
+    assert points["stable"][there].tolist() == [False, True]
+    assert points["jumped"][there].tolist() == [False, False]

@@ -5,12 +5,11 @@ from typing import Annotated
 
 import typer
 
+from continuum_dyn.commands.pictures import save
 from continuum_dyn.commands.show import make_folder
 from statics.errors import InputError, did_you_mean
-from statics.interruption import held
 
 SUFFIXES = (".png", ".svg", ".pdf")
-DOTS_PER_INCH = 200
 
 
 def plot(
@@ -51,6 +50,5 @@ def plot(
     read = read_log(log)
     figure = log_plots.picture(read, parts or [], at or [])
     make_folder(picture.parent)
-    with held():
-        figure.savefig(picture, dpi=DOTS_PER_INCH)
+    save(figure, picture)
     typer.echo(f"written: {picture}")

@@ -8,9 +8,9 @@ import typer
 
 from continuum_dyn.commands.arguments import Folder
 from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.pictures import save
 from continuum_dyn.commands.show import duration, energy, length, make_folder, plain_table, with_status
 from statics.errors import InputError
-from statics.interruption import held
 
 if TYPE_CHECKING:
     from continuum_dyn.ramp_answers import RampAnswers
@@ -53,8 +53,7 @@ def ramp(
         scenario, before = logged_scenario(read), found
         found = with_status(read.title, lambda progress: measured(before, scenario, progress))
     picture = out / f"{log.stem}_ramp.png"
-    with held():
-        ramp_plot.ramp(read.title, found).savefig(picture, dpi=160)
+    save(ramp_plot.ramp(read.title, found), picture)
     verdicts = judged(asked, found.figures)
     if as_json:
         asserted = [verdict.record for verdict in verdicts]

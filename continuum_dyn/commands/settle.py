@@ -8,8 +8,8 @@ import typer
 
 from continuum_dyn.commands.arguments import Folder
 from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.pictures import save
 from continuum_dyn.commands.show import duration, length, make_folder, plain_table
-from statics.interruption import held
 
 if TYPE_CHECKING:
     from continuum_dyn.settling_answers import Settling
@@ -43,8 +43,7 @@ def settle(
     found = settling(read)
     make_folder(out)
     picture = out / f"{log.stem}_settle.png"
-    with held():
-        settling_plot.settling(read.title, found).savefig(picture, dpi=160)
+    save(settling_plot.settling(read.title, found), picture)
     verdicts = judged(asked, found.figures)
     if as_json:
         record = {"log": str(log), "title": read.title, **found.figures, "missing": found.missing}

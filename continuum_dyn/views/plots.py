@@ -4,18 +4,15 @@ from itertools import cycle, pairwise
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from continuum_dyn.cost import Cost
-from continuum_dyn.extras import extras_named
 from continuum_dyn.modes import Mode, RestModes
 from continuum_dyn.reproduce import Rone2012, Shapes
 from continuum_dyn.views.backbone import backbone
 from statics.equilibria import shape_of
 from statics.quantities import QUANTITIES
-
-with extras_named():
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import NullFormatter
 
 ARC_POINTS = 12
 MOST_SHAPES = 6

@@ -3,16 +3,13 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
-from continuum_dyn.extras import extras_named
 from continuum_dyn.loops import on_both_ways
 from continuum_dyn.ramp_answers import Path, RampAnswers
 from continuum_dyn.views.axis_units import Axis, axis
 from statics.quantities import QUANTITIES
-
-with extras_named():
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import LogLocator, NullFormatter
 
 MARKS = 12
 """Places on the static path that are marked."""

@@ -3,13 +3,10 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from continuum_dyn.extras import extras_named
 from continuum_dyn.settling_answers import BANDS, Settling
 from continuum_dyn.views.axis_units import Axis, axis
-
-with extras_named():
-    from matplotlib.figure import Figure
 
 SHADES = ("0.90", "0.80", "0.68")
 """Of the bands, widest first."""
