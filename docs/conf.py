@@ -21,7 +21,7 @@ extensions = [
 html_theme = "furo"
 html_title = "continuum-dyn"
 html_static_path = ["static"]
-html_css_files = ["wide_tables.css"]
+html_css_files = ["pages.css"]
 html_theme_options = {
     "sidebar_hide_name": False,
     "light_css_variables": {"color-brand-primary": "#1f5a8a", "color-brand-content": "#1f5a8a"},
