@@ -1,55 +1,64 @@
-"""What a scenario expects of its own run: the table [expect], bounds by which a hard case is judged."""
+"""What a scenario expects of its own run: the table [expect], by which a hard case is judged."""
 
+from dataclasses import field
 from typing import Annotated
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from continuum_dyn.study import Method
-from statics.checked import STRICT, Positive
+from statics.checked import STRICT, NonNegative, Positive
 from statics.outcome import Outcome
 
 
 @dataclass(frozen=True, config=STRICT)
-class Expect:
-    """How a motion must end, by which methods, and what it may be off by; bounds left out are not checked.
+class Expected:
+    """How a motion must end, by which methods, and what is special about its bounds: see ``bounds.py``.
 
-    ``tip_error`` holds for each method that claims the case, so that any two agree within twice that.
+    Errors are measured against the last method of ``steps``, at tighter tolerances.
     """
 
     outcome: Annotated[Outcome, Field(strict=False, description="how the motion ends")]
     steps: Annotated[
-        dict[Method, int],
+        dict[Method, Annotated[int, Field(ge=1)]],
         Field(min_length=1, description="methods that claim the case, and the most steps that each may take"),
     ]
+    until: Annotated[
+        dict[Method, Positive],
+        Field(description="how far a method goes that does not go to the end, s; it need not settle"),
+    ] = field(default_factory=dict)
     tip_error: Annotated[
-        Positive | None,
-        Field(description="largest distance of the tip from that of a much tighter run, over the samples, m"),
-    ] = None
+        dict[Method, Positive],
+        Field(description="error of the tip of a method where it does not go by its tolerance, m"),
+    ] = field(default_factory=dict)
     horizon: Annotated[
-        Positive | None, Field(description="time up to which tip_error holds, s; by default the end")
+        Positive | None, Field(description="time up to which errors are looked at, s; by default the end")
     ] = None
-    settled_gap: Annotated[
-        Positive | None, Field(description="distance of the tip from a stable equilibrium at the end, m")
-    ] = None
-    ledger: Annotated[
-        Positive | None,
-        Field(
-            description="energy stored less work put in plus energy dissipated, in parts of the largest "
-            "energy of the motion"
-        ),
-    ] = None
-    energy_growth: Annotated[
-        Positive | None,
-        Field(
-            description="largest rise of the energy beyond the work put in, in parts of the largest energy "
-            "of the motion"
-        ),
-    ] = None
+    amplification: Annotated[
+        float, Field(ge=1, description="how many times larger the motion itself makes an error")
+    ] = 1.0
+    still_swings: Annotated[
+        NonNegative, Field(description="what is left of the motion at the tip at its end, m")
+    ] = 0.0
     energy_trend: Annotated[
         Positive | None,
         Field(
             description="slope of the total energy times the duration, in parts of the range of the kinetic "
             "energy"
         ),
+    ] = None
+
+
+@dataclass(frozen=True, config=STRICT)
+class Expect(Expected):
+    """The same, and what is expected of the scenario with the effect ``extension``, or without it.
+
+    A scenario is run so where that is given: with extension if it is not among its effects, else without.
+    """
+
+    with_extension: Annotated[
+        Expected | None, Field(description="what is expected of the same scenario with extension")
+    ] = None
+    without_extension: Annotated[
+        Expected | None, Field(description="what is expected of the same scenario without extension")
     ] = None

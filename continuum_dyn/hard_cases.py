@@ -1,20 +1,23 @@
-"""Hard cases: a scenario run by every method that claims it, and held to the bounds that it states."""
+"""Hard cases: a scenario run by every method that claims it, and held to what must hold of its motion."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from continuum_dyn.accuracy import tip_distance
-from continuum_dyn.expect import Expect
+from continuum_dyn.bounds import Bound, bounds_of
+from continuum_dyn.expect import Expected
 from continuum_dyn.integrators import Budget
 from continuum_dyn.scenario import load_expecting
 from continuum_dyn.simulation import Run, simulate
-from continuum_dyn.study import Method, MotionStudy, Scenario
+from continuum_dyn.study import Method, MotionStudy, Scenario, Solver
 from continuum_dyn.trajectory import Trajectory
+from statics.effects import Extension
 from statics.errors import InputError
+from statics.outcome import Outcome
+from statics.scene import Scene
 
 TIGHTER = 1e-3
 """Times a case's tolerances: those of the run that errors are measured against."""
@@ -23,32 +26,47 @@ TIGHTEST = 1e-13
 
 @dataclass(frozen=True)
 class HardCase:
-    """A scenario with its bounds; ``name`` is its file's."""
+    """A scenario with what is expected of it; ``name`` is its file's, and whether extension is as there."""
 
     name: str
     scenario: Scenario
-    expect: Expect
+    expected: Expected
+
+    @property
+    def reference(self) -> Method:
+        """The method that errors are measured against."""
+        return list(self.expected.steps)[-1]
 
 
 @dataclass(frozen=True)
 class Verdict:
     """How one method did: ``refused`` says why it cannot integrate the scene at all, else there is a run.
 
-    ``tip_error`` in m, None where it is not asked for or the run ended early; ``missed`` has a sentence for
-    every bound that it broke. ``claimed`` tells whether the case says that the method can do it.
+    ``tip_error`` in m, None where the run ended otherwise than it should; ``bounds`` are then not known,
+    either. ``missed`` has a sentence for everything that did not hold. ``claimed`` tells whether the case
+    says that the method can do it.
     """
 
-    case: str
+    case: HardCase
     method: Method
     claimed: bool
     run: Run | None = None
     refused: str = ""
     tip_error: float | None = None
+    bounds: tuple[Bound, ...] = ()
     missed: tuple[str, ...] = ()
 
+    @property
+    def used(self) -> float:
+        """Largest part of any bound that the run used up."""
+        return max((bound.part for bound in self.bounds), default=0.0)
 
-def load_case(path: Path) -> HardCase:
-    """The case of a scenario file. Raises ``InputError`` if it is not one of a motion, or expects nothing."""
+
+def load_cases(path: Path) -> list[HardCase]:
+    """The case of a scenario file, and the same with or without extension where the file asks for it.
+
+    Raises ``InputError`` if it is not one of a motion, or expects nothing.
+    """
     scenario, expect = load_expecting(path)
     if expect is None:
         raise InputError(f"{path}: expects nothing. Give [expect] outcome, and steps of each method.")
@@ -56,7 +74,21 @@ def load_case(path: Path) -> HardCase:
         raise InputError(
             f'{path}: [expect] is about a motion; this is a study of kind "{scenario.study.kind}".'
         )
-    return HardCase(path.stem, scenario, expect)
+    extends, name = scenario.scene.has("extension"), path.stem
+    other = expect.without_extension if extends else expect.with_extension
+    if (expect.with_extension if extends else expect.without_extension) is not None:
+        raise InputError(
+            f"{path}: [expect.{'with' if extends else 'without'}_extension]: the scenario is so by itself. "
+            "Give that in [expect]."
+        )
+    cases = [HardCase(name, scenario, expect)]
+    if other is not None and extends:
+        cases.append(HardCase(f"{name}, without extension", scenario.without("extension"), other))
+    elif other is not None:
+        effects = (*scenario.scene.effects, Extension())
+        extending = replace(scenario, scene=Scene(scenario.scene.arm, effects))
+        cases.append(HardCase(f"{name}, with extension", extending, other))
+    return cases
 
 
 def judge(
@@ -69,9 +101,9 @@ def judge(
 
     An other has ``patience`` (s) for its run; ``told`` is called with what is going on.
     """
-    claiming: tuple[Method, ...] = tuple(case.expect.steps)
+    claiming: tuple[Method, ...] = tuple(case.expected.steps)
     told(f"{case.name}: reference")
-    reference = _reference(case, claiming[0])
+    reference = _reference(case)
     verdicts = []
     order: list[Method] = [*claiming, *(other for other in others if other not in claiming)]
     for method in order:
@@ -83,34 +115,49 @@ def judge(
     return verdicts
 
 
-def _reference(case: HardCase, method: Method) -> Trajectory | None:
-    if case.expect.tip_error is None:
-        return None
-    solver = case.scenario.solver
-    rtol = max(TIGHTEST, TIGHTER * solver.rtol)
-    tight = replace(
-        solver, method="chain" if method == "chain" else "explicit", step=None, rtol=rtol, atol=1e-3 * rtol
-    )
-    run = simulate(replace(case.scenario, solver=tight))
-    return run.trajectory if run.outcome is case.expect.outcome else None
+def _reference(case: HardCase) -> Trajectory | None:
+    """The motion by the case's last method at tighter tolerances; None if it ended otherwise than it must."""
+    rtol = max(TIGHTEST, TIGHTER * case.scenario.solver.rtol)
+    tight = replace(case.scenario.solver, method=case.reference, step=None, rtol=rtol, atol=1e-3 * rtol)
+    run = simulate(_as_far_as_claimed(case, tight))
+    return run.trajectory if run.outcome is _outcome(case, case.reference) else None
+
+
+def _as_far_as_claimed(case: HardCase, solver: Solver) -> Scenario:
+    """The scenario by that method, up to the sample that it goes to."""
+    scenario, study = replace(case.scenario, solver=solver), case.scenario.study
+    until = case.expected.until.get(solver.method)
+    assert isinstance(study, MotionStudy)
+    if until is None:
+        return scenario
+    between = study.duration / (study.samples - 1)
+    count = max(1, int(until / between * (1.0 + 1e-9)))
+    return replace(scenario, study=MotionStudy(count * between, samples=count + 1))
+
+
+def _outcome(case: HardCase, method: Method) -> Outcome:
+    """How the case must end by that method."""
+    cut, settled = method in case.expected.until, case.expected.outcome is Outcome.SETTLED
+    return Outcome.COMPLETED if cut and settled else case.expected.outcome
 
 
 def _verdict(case: HardCase, method: Method, reference: Trajectory | None, budget: Budget) -> Verdict:
-    claimed, solver = method in case.expect.steps, case.scenario.solver
+    claimed, solver = method in case.expected.steps, case.scenario.solver
     step = solver.step if method == "midpoint" else None
     try:
-        run = simulate(
-            replace(case.scenario, solver=replace(solver, method=method, step=step)), budget=budget
-        )
+        scenario = _as_far_as_claimed(case, replace(solver, method=method, step=step))
+        run = simulate(scenario, budget=budget)
     except InputError as reason:
         missed = (str(reason),) if claimed else ()
-        return Verdict(case.name, method, claimed, refused=str(reason), missed=missed)
-    error = None
-    if reference is not None and run.trajectory is not None and run.outcome is case.expect.outcome:
-        error = _tip_error(run.trajectory, reference, case.expect.horizon)
-    return Verdict(
-        case.name, method, claimed, run, "", error, tuple(missed_by(run, method, error, case.expect))
-    )
+        return Verdict(case, method, claimed, refused=str(reason), missed=missed)
+    if run.outcome is not _outcome(case, method) or run.trajectory is None:
+        why = f": {run.message}" if run.message else ""
+        ended = f"ended as {run.outcome}, not {_outcome(case, method)}{why}"
+        return Verdict(case, method, claimed, run, missed=(ended,))
+    error = None if reference is None else _tip_error(run.trajectory, reference, case.expected.horizon)
+    bounds = bounds_of(run, case.expected, error, whole=method not in case.expected.until)
+    missed = tuple(str(bound) for bound in bounds if not bound.kept)
+    return Verdict(case, method, claimed, run, "", error, tuple(bounds), missed)
 
 
 def _tip_error(found: Trajectory, reference: Trajectory, horizon: float | None) -> float:
@@ -118,46 +165,9 @@ def _tip_error(found: Trajectory, reference: Trajectory, horizon: float | None) 
 
     The last state of a run that stopped early is no sample.
     """
-    both = int(
-        np.argmin(np.append(found.time[: reference.time.size] == reference.time[: found.time.size], False))
-    )
-    count = both if horizon is None else min(both, int(np.searchsorted(reference.time, horizon, "right")))
+    count = min(found.time.size, reference.time.size)
+    same = np.isclose(found.time[:count], reference.time[:count], rtol=1e-9, atol=0.0)
+    count = count if same.all() else int(np.argmin(same))
+    if horizon is not None:
+        count = min(count, int(np.searchsorted(reference.time, horizon * (1.0 + 1e-9), "right")))
     return tip_distance(found.first(count), reference.first(count))
-
-
-def missed_by(run: Run, method: Method, tip_error: float | None, expect: Expect) -> list[str]:
-    """A sentence for each bound that the run breaks."""
-    if run.outcome is not expect.outcome:
-        why = f": {run.message}" if run.message else ""
-        return [f"ended as {run.outcome}, not {expect.outcome}{why}"]
-    if run.trajectory is None:
-        return []
-    found = {"tip_error": tip_error, "settled_gap": run.static_gap, **energies(run.trajectory)}
-    found["steps"] = run.trajectory.counters["steps"]
-    bounds: dict[str, Any] = {name: getattr(expect, name) for name in found}
-    bounds["steps"] = expect.steps.get(method)
-    checked = ((name, value, bounds[name]) for name, value in found.items() if bounds[name] is not None)
-    return [
-        f"{name} {'not known' if value is None else f'{value:.3g}'}, allowed {bound:.3g}"
-        for name, value, bound in checked
-        if value is None or not value <= bound
-    ]
-
-
-def energies(found: Trajectory) -> dict[str, float]:
-    """The motion's ``ledger``, ``energy_growth`` and ``energy_trend``, as ``Expect`` defines them."""
-    stored = found.stored_energy
-    kinetic = found.ledger["kinetic_energy"]
-    left = stored - found.ledger["input_work"]
-    rise = float(np.max(left - np.minimum.accumulate(left)))
-    largest = found.largest_energy
-    slope = np.polyfit(found.time - found.time.mean(), stored, 1)[0] if found.time.size > 1 else 0.0
-    return {
-        "ledger": _part(float(np.abs(found.ledger_gap).max()), largest),
-        "energy_growth": _part(rise, largest),
-        "energy_trend": _part(abs(float(slope)) * float(np.ptp(found.time)), float(np.ptp(kinetic))),
-    }
-
-
-def _part(value: float, whole: float) -> float:
-    return 0.0 if value == 0.0 else value / max(whole, 1e-300)

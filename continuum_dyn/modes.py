@@ -238,7 +238,7 @@ def check(scene: Scene) -> None:
         raise InputError("modes need the effect 'inertia'. Add inertia = {} to [effects].")
     if scene.arm.massless_nodes:
         raise InputError(
-            "modes need mass on every node, and those between disks carry none. Give the arm's core_density."
+            "modes need mass on every node, and some carry none. Give the arm's core_density, or disk_mass."
         )
     size = scene.arm.segments * len(scene.coordinates)
     if size > MOST_COORDINATES:

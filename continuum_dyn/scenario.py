@@ -247,7 +247,7 @@ def _profile(given: Any, tables: Tables, quantity: str) -> Profile:
     """A profile from a number, a table in the file, or a CSV file beside it."""
     if isinstance(given, float | int):
         return Constant(float(given))
-    return tables.profile(given.file, quantity) if isinstance(given, TableFile) else given
+    return tables.profile(given.file, quantity, given.periods) if isinstance(given, TableFile) else given
 
 
 def _base_motion(base: BaseTable, tables: Tables) -> tuple[Profile, ...]:

@@ -15,18 +15,22 @@ from continuum_dyn.study import (
     Solver,
     StepResponseStudy,
 )
-from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, Payload, PerDisk
+from continuum_dyn.table_file import MAX_ROWS
+from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassPerDisk, Payload, PerDisk
 from statics.checked import STRICT, Line, NonNegative, Positive, Vector
 
 
 class TableFile(BaseModel):
-    """A profile kept in a CSV file beside the scenario."""
+    """A profile kept in a CSV file beside the scenario; of several ``periods`` the file is one."""
 
     model_config = STRICT
     profile: Literal["table"]
     file: Annotated[
         Line, Field(description="CSV file beside the scenario; its first line is time,tension or the like")
     ]
+    periods: Annotated[
+        int, Field(ge=1, le=MAX_ROWS, description="how often its rows come, one time after the other")
+    ] = 1
 
 
 UNKNOWN_PROFILE = "unknown profile"
@@ -78,6 +82,9 @@ def _number_kind(value: Any) -> str:
 PositiveEach = Annotated[
     Annotated[Positive, Tag("number")] | Annotated[PerDisk, Tag("list")], Discriminator(_number_kind)
 ]
+MassEach = Annotated[
+    Annotated[NonNegative, Tag("number")] | Annotated[MassPerDisk, Tag("list")], Discriminator(_number_kind)
+]
 NumberEach = Annotated[
     Annotated[float, Tag("number")]
     | Annotated[Annotated[tuple[float, ...], Field(strict=False)], Tag("list")],
@@ -105,8 +112,8 @@ class ArmTable(BaseModel):
     core_radius: PositiveEach | None = None
     area: PositiveEach | None = None
     second_moment: PositiveEach | None = None
-    disk_mass: PositiveEach | None = None
-    disk_inertia: PositiveEach | None = None
+    disk_mass: MassEach | None = None
+    disk_inertia: MassEach | None = None
     core_density: Positive | None = None
     reference_curvature: NumberEach | None = None
     subsegments: Annotated[

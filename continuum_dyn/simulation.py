@@ -349,18 +349,26 @@ def _end(
 ) -> tuple[Equilibrium, str]:
     """Where the motion may end: the equilibrium found from its start, or another one that it came to instead.
 
-    The latter is told in words. Cables that rub leave it to the motion's history where it rests.
+    The latter is told in words. Cables that rub leave it anywhere between two branches.
     """
     end = statics.solve(inputs, start.coordinates, start)
-    if len(statics.branches(inputs, end)) > 1 or (end.found and tip_gap(moved.tip, [end.tip]) < within):
+    if _rests_at(end, statics, inputs, moved, within):
         return end, ""
     last = moved.bend_angle[-1], None if moved.elongation is None else moved.elongation[-1]
     near = statics.solve(inputs, np.column_stack([column for column in last if column is not None]))
-    if not (near.found and tip_gap(moved.tip, [near.tip]) < within):
+    if not _rests_at(near, statics, inputs, moved, within):
         return end, ""
     x, y, _ = near.tip
     told = f"at another equilibrium than the one found from the start: tip at x {x:.4g} m, y {y:.4g} m"
     return near, told if end.found and tip_gap(near.tip, [end.tip]) > within else ""
+
+
+def _rests_at(
+    end: Equilibrium, statics: StaticSolver, inputs: np.ndarray, moved: Trajectory, within: float
+) -> bool:
+    """Whether the tip has come to that equilibrium, or between the branches that belong to it."""
+    rests = [branch.tip for branch in statics.branches(inputs, end) if branch.found] if end.found else []
+    return bool(rests) and tip_gap(moved.tip, rests) < within
 
 
 def _static_path(
@@ -388,9 +396,9 @@ def _moved(
     y: np.ndarray,
     monitor: Monitor,
     sink: Sink | None,
-    done: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+    done: tuple[np.ndarray, ...] | None = None,
 ) -> Trajectory:
-    """The motion from state ``y`` with the run's solver, after the times, states and inputs already done."""
+    """The motion from state ``y`` with the run's solver, after the samples already done."""
     assert isinstance(so_far.scenario.study, MotionStudy)
     assert so_far.solver is not None
     study, gathered = so_far.scenario.study, Samples(dynamics, None if sink is None else sink.add)
@@ -410,7 +418,7 @@ def _moved_on(
     study, times = so_far.scenario.study, begun.columns["time"]
     states, inputs = begun.states(dynamics, stretches)
     asked = np.isin(times, np.linspace(0.0, study.duration, study.samples))
-    done = times[asked], states[asked], inputs[asked]
+    done = times[asked], states[asked], inputs[asked], begun.columns["step_size"][asked]
     rest = spans_from(stretches, float(times[-1]))
     if not rest:
         gathered = Samples(dynamics)

@@ -230,10 +230,10 @@ class Scenario:
                     f"[base] {name}: the arm's base is at {start:g} {unit}, its motion starts at "
                     f"{profile.initial:g}. Give one number for both."
                 )
-        if arm.core_density is None and (arm.subsegments > 1 or self.chooses_mesh):
+        if arm.massless_nodes or (arm.core_density is None and self.chooses_mesh):
             raise InputError(
-                "a base that moves needs mass on every node, and those between disks carry none. "
-                "Give the arm's core_density."
+                "a base that moves needs mass on every node, and some carry none. "
+                "Give the arm's core_density, or disk_mass."
             )
 
     def _check_midpoint(self) -> None:

@@ -200,7 +200,7 @@ def _number_or_text(key: dict[str, Any], definitions: dict[str, Any]) -> str:
     if key["type"] == "array":
         return "list of them"
     if key["type"] == "object":
-        return f"table of {_values(key['additionalProperties'], definitions)}s"
+        return f"table: for each name {_values(key['additionalProperties'], definitions)}"
     words = {"number": "number", "integer": "integer", "string": "text", "boolean": "`true` or `false`"}
     signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
     bounds = [f"{sign} {key[name]:g}" for name, sign in signs.items() if name in key]

@@ -37,6 +37,10 @@ SHORTEST_HIDING = 1e-3
 """Likewise steps longer than this that seem to hide two folds: what snaps by less may be taken for smooth."""
 HALF_DIFFERENCE = 0.5
 """Of places on the ramp, for the residual's derivative by the place: it is linear in tensions and factors."""
+NEARBY = 1e-6
+"""Likewise where cables driven by their length may go slack or catch close by."""
+CATCHING = 1e-3
+"""Longest step in which one may: there the path has a corner."""
 NEAR_LIMIT = 1e-3
 """Clearance below which a path that cannot be followed any further has come to a geometric limit."""
 JUST_BEFORE = 1e-9
@@ -135,6 +139,8 @@ class ArcLength:
         self.chain = np.empty((segments, self.kernel.CHAIN_COLUMNS))
         self.pivots = np.empty((segments, self.kernel.PIVOT_COLUMNS))
         units = np.array([1.0, solver.scene.arm.rest_length])[:dofs]
+        self.by_length = solver.scene.driven_by_length
+        self.half_difference = NEARBY if self.by_length else HALF_DIFFERENCE
         self.weight = segments / units**2
         """So that a uniform bend of the whole arm counts as its angle, whatever the number of segments."""
 
@@ -154,8 +160,16 @@ class ArcLength:
         """Derivative of the residual by the place on the ramp."""
         point = min(max(int(place), 0), len(self.ramp) - 2)
         way = self.ramp[point + 1] - self.ramp[point]
-        ahead, behind = (self.inputs(place) + sign * HALF_DIFFERENCE * way for sign in (1, -1))
-        return (self.residual(q, ahead)[0] - self.residual(q, behind)[0]) / (2 * HALF_DIFFERENCE)
+        ahead, behind = (self.inputs(place) + sign * self.half_difference * way for sign in (1, -1))
+        return (self.residual(q, ahead)[0] - self.residual(q, behind)[0]) / (2 * self.half_difference)
+
+    def taut(self, at: "_Place") -> list[bool]:
+        """Which cables pull at a place: of those driven by their length some may be slack."""
+        solver, pose = self.solver, np.empty((len(at.q), 3))
+        inputs = self.inputs(at.place)
+        self.kernel.observe(at.q, inputs, solver.segments, solver.disks, self.chain, pose)
+        disks = pose[solver.scene.arm.disk_nodes].T
+        return (solver.scene.driven_by(inputs, *disks)["tension"] > 0.0).tolist()
 
     def solve(self, right: np.ndarray) -> tuple[np.ndarray, int]:
         """-H^-1 right, for the q of the last ``residual``; and the number of H's negative eigenvalues."""
@@ -204,6 +218,7 @@ class ArcLength:
     def corrected(self, here: _Place, length: float) -> _Place | None:
         """The point of the path that far along its tangent, by Newton's method; None if it is not found."""
         q, place = here.q + length * here.along, here.place + length * here.along_place
+        size = np.inf
         for correction in range(1, MOST_CORRECTIONS + 1):
             by_place = self.by_place(q, place)
             residual, _ = self.residual(q, self.inputs(place))
@@ -213,11 +228,11 @@ class ArcLength:
             lacking -= here.along_place * (place - here.place) + self.inner(here.along, change)
             step = lacking / (self.inner(here.along, turning) + here.along_place)
             change += step * turning
-            size = np.abs(change * np.sqrt(self.weight)).max() + abs(step)
+            last, size = size, np.abs(change * np.sqrt(self.weight)).max() + abs(step)
             if not size < 10.0 * max(length, SHORTEST_STEP):
                 return None
             q, place = q + change, place + step
-            if size < search.AT_REST:
+            if size < search.AT_REST and not (self.by_length and size < search.FALLING * last):
                 return self.place_at(q, place, (here.along, here.along_place), correction)
         return None
 
@@ -310,6 +325,8 @@ class _Follower:
     def _is_smooth(self, there: _Place, length: float) -> bool:
         """Whether the path turns little on the way, goes where its tangents say, and hides no two folds."""
         here, inner = self.here, self.arc.inner
+        if self.arc.by_length and length < CATCHING and self.arc.taut(here) != self.arc.taut(there):
+            return True
         cosine = inner(here.along, there.along) + here.along_place * there.along_place
         off = (there.q - here.q) / length - 0.5 * (here.along + there.along)
         off_place = (there.place - here.place) / length - 0.5 * (here.along_place + there.along_place)

@@ -80,6 +80,7 @@ class CableKind(NamedTuple):
 
 
 PerDisk = Annotated[tuple[Positive, ...], Field(strict=False, min_length=1)]
+MassPerDisk = Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1)]
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -93,8 +94,8 @@ class Each:
     youngs_modulus: PerDisk | None = None
     area: PerDisk | None = None
     second_moment: PerDisk | None = None
-    disk_mass: PerDisk | None = None
-    disk_inertia: PerDisk | None = None
+    disk_mass: MassPerDisk | None = None
+    disk_inertia: MassPerDisk | None = None
     reference_curvature: Annotated[tuple[float, ...], Field(strict=False)] | None = None
 
 
@@ -156,8 +157,8 @@ class Arm:
     youngs_modulus: Positive | None = None
     area: Positive | None = None
     second_moment: Positive | None = None
-    disk_mass: Positive | None = None
-    disk_inertia: Positive | None = None
+    disk_mass: NonNegative | None = None
+    disk_inertia: NonNegative | None = None
     core_density: Positive | None = None
     reference_curvature: float = 0.0
     subsegments: Subsegments = 1
@@ -356,8 +357,10 @@ class Arm:
 
     @property
     def massless_nodes(self) -> bool:
-        """Whether some nodes carry no mass: those between disks of a core without density."""
-        return self.subsegments > 1 and self.core_density is None
+        """Whether some nodes carry no mass: none of a disk, of the core, or of a payload."""
+        columns = self.node_columns().items()
+        masses = [values for name, values in columns if name.startswith(("node_mass", "payload_mass"))]
+        return not np.all(np.sum(masses, axis=0) > 0.0)
 
     def at_disks(self, values: np.ndarray | float) -> np.ndarray:
         """What stands on disks only, shape (disks,) or a scalar, over all nodes, shape (segments,)."""

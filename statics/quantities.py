@@ -124,7 +124,7 @@ disk_theta           | -     | rad    | angle of a disk's normal against the x a
 stable               | -     | 1      | 1 where the equilibrium is stable
 unstable_directions  | -     | 1      | number of independent directions in which an equilibrium is unstable
 critical             | -     | 1      | 1 where a path of equilibria turns back, 2 where it branches, else 0
-jumped               | -     | 1      | 1 where an equilibrium of a ramp is not reached from the one before along stable ones
+jumped               | -     | 1      | 1 where no path of stable ones leads here from a ramp's last one
 residual             | -     | N      | largest unbalanced generalized force, N or N m
 kinetic_energy       | -     | J      | kinetic energy of the masses
 elastic_energy       | -     | J      | energy stored in what is elastic: the core, by bending and extension
@@ -144,6 +144,7 @@ price                | -     | 1      | number of a way to compute a motion
 method               | -     | 1      | name of an integrator
 rtol                 | -     | 1      | relative tolerance of an integrator
 step                 | h     | s      | step of an integrator whose steps are equal
+step_size            | -     | s      | step of the integrator that a sample lies in, zero where it has none
 tip_error            | -     | m      | largest distance of the tip from where it exactly is, over the samples
 angle_error          | -     | rad    | angle of the tip against what it exactly is
 solve_time           | -     | s      | time that the solving takes

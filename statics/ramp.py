@@ -27,8 +27,9 @@ def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
 
     Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
     starts from the last one that was. One that does not continue the one before has ``jumped``, and
-    ``lost_at`` says from where; it says likewise where the ramp goes on along a path that branches off. With friction the first is that of cables drawn in, and every other
-    remembers the one before it. Raises ``InputError`` for tensions that do not fit.
+    ``lost_at`` says from where; it says likewise where the ramp goes on along a path that branches off.
+    With friction the first is that of cables drawn in, and every other remembers the one before it. Raises
+    ``InputError`` for tensions that do not fit.
     """
     return ramp(StaticSolver(scene), [scene.check_tension(tension) for tension in tensions])
 

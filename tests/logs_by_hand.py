@@ -33,17 +33,19 @@ def motion_log(
         "cable_stiffness": np.zeros(1),
     }
     return Log(
-        Path(path),
-        "By hand",
-        Outcome.COMPLETED,
-        "",
-        SCENARIO + loads,
-        {},
-        {},
-        ("upper",),
-        arm,
-        trajectory,
-        {},
+        path=Path(path),
+        title="By hand",
+        outcome=Outcome.COMPLETED,
+        message="",
+        scenario=SCENARIO + loads,
+        tables={},
+        attributes={},
+        cables=("upper",),
+        arm=arm,
+        trajectory=trajectory,
+        equilibria={},
+        counters={},
+        complete=True,
     )
 
 

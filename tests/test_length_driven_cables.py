@@ -10,8 +10,10 @@ from scipy.optimize import brentq
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.profiles import Step
 from continuum_dyn.study import Solver
-from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Scene, codegen
+from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Outcome, Scene, codegen
+from statics.arc_length import follow
 from statics.equilibria import Equilibrium, StaticSolver
+from statics.ramp import ramp
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 STIFFNESS = 2e4
@@ -71,6 +73,18 @@ def test_arm_rests_as_under_the_tension_that_the_length_makes(displacement: floa
     np.testing.assert_allclose(found.coordinates, under.coordinates, rtol=1e-9, atol=1e-13)
     drawn_in = under.cable_displacement[0] + found.tension[0] / STIFFNESS
     assert drawn_in == pytest.approx(displacement, abs=1e-12)
+
+
+def test_ramp_that_a_cable_catches_in_does_not_jump_and_its_path_is_followed() -> None:
+    """The path has a corner there, at -0.087 mm: so much does the hanging arm draw out of a slack cable."""
+    solver = StaticSolver(driven(BY_LENGTH), codegen.load_interpreted)
+    displacements = np.array([[-2e-3], [4e-3]])
+    inputs = np.hstack([displacements, np.zeros((2, len(solver.scene.inputs) - 1))])
+    path, points = follow(solver, inputs), ramp(solver, inputs)
+    assert path.outcome is Outcome.COMPLETED
+    assert not path.critical
+    assert not points[1].jumped
+    np.testing.assert_allclose(path.end.coordinates, points[1].coordinates, atol=1e-12)
 
 
 def test_cables_of_given_length_hold_an_arm_up_that_would_buckle() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import SCENARIOS
+from playback_entities import entities_of
 from rerun.chunk import RrdReader
 
 from continuum_dyn import load_scenario, simulate
@@ -46,12 +47,7 @@ def shown(log: Log, folder: Path) -> dict[str, dict[str, list[Any]]]:
     """Entities of the recording of a log, by path: their columns by name, those that never change too."""
     path = folder / "shown.rrd"
     save([log], path)
-    entities: dict[str, dict[str, list[Any]]] = {}
-    for chunk in RrdReader(path).stream():
-        columns = entities.setdefault(str(chunk.entity_path), {})
-        for name, values in chunk.to_record_batch().to_pydict().items():
-            columns.setdefault(name, []).extend(values)
-    return entities
+    return entities_of(path)
 
 
 def points(entity: Mapping[str, list[Any]]) -> np.ndarray:
@@ -168,7 +164,7 @@ def test_long_arms_and_long_motions_are_thinned_out(
         motion, trajectory={"time": np.linspace(0.0, 50.0, samples), **many}, arm=arm, equilibria={}
     )
     entities = shown(long, tmp_path)
-    assert np.shape(entities["/arm/rim"]["LineStrips2D:strips"]) == (100, 1, 601, 2)
+    assert np.shape(entities["/arm/rim"]["LineStrips2D:strips"]) == (100, 1, 201, 2)
     assert np.shape(entities["/arm/disks"]["LineStrips2D:strips"]) == (100, 100, 2, 2)
     names = entities["/series/curvature"]["SeriesLines:names"][0]
     assert (len(names), names[0], names[-1]) == (8, "segment 1", "segment 200")

@@ -1,7 +1,9 @@
 """Scenario files: what is good runs, what is bad is named on one screen, and nothing is evaluated."""
 
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import SCENARIOS
 
@@ -72,7 +74,7 @@ def test_every_scenario_of_the_repository_loads_and_opens_with_what_it_shows(pat
         ("samples = 1001", "samples = 1000000000", "Ask for fewer samples"),
         ('"rone2012"', '"rone2012"\ndisks = 1000000000', "less than or equal to 10000; read 1000000000"),
         ('"rone2012"', '"rone2012"\ndisks = 0', "greater than or equal to 1"),
-        ('"rone2012"', '"rone2012"\ndisk_mass = -1', "greater than 0"),
+        ('"rone2012"', '"rone2012"\ndisk_mass = -1', "greater than or equal to 0"),
         ('"rone2012"', '"rone2012"\nyoungs_modulus = 0', "greater than 0"),
         ('"rone2012"', '"rone2012"\ncore_radius = 4e-4\narea = 5e-7', "core_radius already sets area"),
         ('"rone2012"', '"rone2012"\nreference_curvature = 125.0', "holes meet in the unloaded arm"),
@@ -182,6 +184,44 @@ def test_files_that_are_not_toml_are_refused(tmp_path: Path, content: bytes) -> 
 def test_missing_file_names_the_nearest() -> None:
     with pytest.raises(InputError, match=r"Did you mean 'step_response\.toml'"):
         load_scenario(SCENARIOS / "step_responce.toml")
+
+
+@pytest.mark.parametrize(
+    ("rows", "times", "values"),
+    [
+        ("0,1\n1,2\n2,1", (0.0, 1.0, 2.0, 3.0, 4.0), (1, 2, 1, 2, 1)),
+        ("1,1\n2,3", (1.0, 2.0, np.nextafter(2.0, 3.0), 3.0), (1, 3, 1, 3)),
+    ],
+    ids=["closed", "with a jump"],
+)
+def test_table_of_several_periods_repeats_its_rows(
+    tmp_path: Path, rows: str, times: tuple[float, ...], values: tuple[float, ...]
+) -> None:
+    (tmp_path / "table.csv").write_text(f"time,tension\n{rows}\n")
+    text = GOOD.replace('"step", before = 0.0, after = 1.0', '"table", file = "table.csv", periods = 2')
+    (profile,) = load_scenario(write(tmp_path, text)).drives
+    assert isinstance(profile, Table)
+    assert profile.time == times
+    assert profile.value == values
+
+
+def test_corners_one_ulp_apart_stay_so_in_every_period(tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text(
+        f"time,tension\n0,1\n0.3,1\n{float(np.nextafter(0.3, 1.0))!r},2\n0.7,1\n"
+    )
+    text = GOOD.replace('"step", before = 0.0, after = 1.0', '"table", file = "table.csv", periods = 300')
+    (profile,) = load_scenario(write(tmp_path, text)).drives
+    assert isinstance(profile, Table)
+    jumps = [(early, late) for early, late in pairwise(profile.time) if late - early < 0.1]
+    assert len(jumps) == 300
+    assert all(late - early <= 2 * np.spacing(late) for early, late in jumps)
+
+
+def test_table_of_too_many_periods_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text("time,tension\n0,1\n1,2\n")
+    good = '"step", before = 0.0, after = 1.0'
+    message = refusal(tmp_path, good, '"table", file = "table.csv", periods = 600_000')
+    assert "table 'table.csv': 600000 periods of 2 rows. Allowed: 1000000 rows." in message
 
 
 def test_solver_table_knows_every_integrator() -> None:

@@ -1,7 +1,9 @@
 """``continuum-dyn hard``: run hard cases by every method that claims them, and hold them to their bounds."""
 
 import csv
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,14 +13,14 @@ from continuum_dyn.commands.show import duration, length, with_status
 from statics.errors import InputError, LogError
 
 if TYPE_CHECKING:
-    from continuum_dyn.hard_cases import HardCase, Verdict
+    from continuum_dyn.hard_cases import Verdict
 
-PATIENCE = 2.0
+PATIENCE = 1.0
 """Seconds for a method that does not claim a case."""
-COLUMNS = ("case", "method", "outcome", "error", "steps", "work", "time", "")
+COLUMNS = ("method", "outcome", "error", "steps", "work", "time", "used")
 CSV_COLUMNS = (
     *("case", "method", "claimed", "outcome", "tip_error", "steps", "segment_evaluations"),
-    *("solve_time", "missed"),
+    *("solve_time", "used", "missed"),
 )
 ROW = "  {:<9} {:<20} {:>9} {:>8} {:>8} {:>8} {:>7}"
 """A verdict's line on a terminal, below its case."""
@@ -38,10 +40,11 @@ def hard(
 ) -> None:
     """Run hard cases and hold them to their bounds.
 
-    Each scenario of the folder states its bounds in a table [expect]; it is run by every method that claims
-    it. Prints a table, and what broke a bound. Exit status: 0 all bounds are kept, 1 one is not, 2 bad input.
+    Each scenario of the folder says in a table [expect] how it must end and by which methods; it is run by
+    every one of them. Prints a table, and what broke a bound. Exit status: 0 all bounds are kept, 1 one is
+    not, 2 bad input.
     """
-    from continuum_dyn.hard_cases import judge, load_case
+    from continuum_dyn.hard_cases import judge, load_cases
     from continuum_dyn.integrators import METHODS
 
     if out is not None and out.suffix not in SUFFIXES:
@@ -49,7 +52,7 @@ def hard(
     paths = sorted(folder.glob("*.toml"))
     if not paths:
         raise InputError(f"{folder}: holds no scenarios (*.toml).")
-    cases = [load_case(path) for path in paths]
+    cases = [case for path in paths for case in load_cases(path)]
     others: Any = METHODS if every else ()
 
     def all_judged(told: Callable[[str], None]) -> "list[Verdict]":
@@ -58,17 +61,17 @@ def hard(
     verdicts = with_status(str(folder), all_judged)
     _show(verdicts)
     if out is not None:
-        _write(out, cases, verdicts)
+        _write(out, verdicts)
         typer.echo(f"written: {out}")
     raise typer.Exit(int(any(verdict.claimed and verdict.missed for verdict in verdicts)))
 
 
-def _write(path: Path, cases: "Sequence[HardCase]", verdicts: "Sequence[Verdict]") -> None:
+def _write(path: Path, verdicts: "Sequence[Verdict]") -> None:
     try:
         if path.suffix == ".csv":
             _write_csv(path, verdicts)
         else:
-            path.write_text(_markdown(cases, verdicts), encoding="utf-8")
+            path.write_text(_markdown(verdicts), encoding="utf-8")
     except OSError as error:
         raise LogError(f"cannot write {path}: {error.strerror or error}.") from error
 
@@ -82,8 +85,9 @@ def _write_csv(path: Path, verdicts: "Iterable[Verdict]") -> None:
             run, counters = verdict.run, _counters(verdict)
             outcome, seconds = ("refused", None) if run is None else (str(run.outcome), run.solve_time)
             work = (counters.get(name) for name in ("steps", "segment_evaluations"))
-            found = (verdict.claimed, outcome, verdict.tip_error, *work, seconds)
-            writer.writerow([verdict.case, verdict.method, *found, "; ".join(verdict.missed)])
+            used = verdict.used if verdict.bounds else None
+            found = (verdict.claimed, outcome, verdict.tip_error, *work, seconds, used)
+            writer.writerow([verdict.case.name, verdict.method, *found, "; ".join(verdict.missed)])
 
 
 def _counters(verdict: "Verdict") -> dict[str, int]:
@@ -91,7 +95,7 @@ def _counters(verdict: "Verdict") -> dict[str, int]:
 
 
 def _row(verdict: "Verdict") -> tuple[str, ...]:
-    """The cells of a verdict, but for its case."""
+    """The cells of a verdict."""
     if verdict.run is None:
         return verdict.method, "refused", "", "", "", "", "missed" if verdict.claimed else ""
     counters, error = _counters(verdict), verdict.tip_error
@@ -101,7 +105,7 @@ def _row(verdict: "Verdict") -> tuple[str, ...]:
         "" if error is None else length(error),
         *(_count(counters.get(name)) for name in ("steps", "segment_evaluations")),
         duration(verdict.run.solve_time),
-        "missed" if verdict.missed else "met",
+        "missed" if verdict.missed else _percent(verdict.used),
     )
 
 
@@ -111,52 +115,82 @@ def _count(value: int | None) -> str:
     return str(value) if value < 100_000 else f"{value:.1e}".replace("e+0", "e")
 
 
+def _percent(part: float) -> str:
+    return f"{100.0 * part:.0f} %" if part >= 0.01 else "< 1 %"
+
+
 def _show(verdicts: "Iterable[Verdict]") -> None:
-    typer.echo(ROW.format(*COLUMNS[1:]))
-    last = ""
-    for verdict in verdicts:
-        if verdict.case != last:
-            typer.echo(verdict.case)
-        typer.echo(ROW.format(*_row(verdict)).rstrip())
-        last = verdict.case
-    typer.echo("\nError of the tip against a much tighter run; work in segment evaluations.")
+    typer.echo(ROW.format(*COLUMNS))
+    for name, of_case in groupby(verdicts, key=lambda verdict: verdict.case.name):
+        typer.echo(name)
+        for verdict in of_case:
+            typer.echo(ROW.format(*_row(verdict)).rstrip())
+    typer.echo("\nError of the tip against a much tighter run; work in segment evaluations;")
+    typer.echo("used: the largest part of what a bound allows.")
     for verdict in verdicts:
         if verdict.claimed and verdict.missed:
-            typer.echo(f"{verdict.case}, {verdict.method}: {'; '.join(verdict.missed)}")
+            typer.echo(f"{verdict.case.name}, {verdict.method}: {'; '.join(verdict.missed)}")
 
 
-def _markdown(cases: "Iterable[HardCase]", verdicts: "Sequence[Verdict]") -> str:
-    """Each case with its title, then the methods that claim it, then the others."""
-    lines = [
-        "# Hard cases",
-        "",
-        INTRODUCTION,
-        "",
-        "| case | why it is hard, and what must hold |",
-        "|---|---|",
-    ]
-    lines += [f"| `{case.name}` | {case.scenario.title} |" for case in cases]
-    claimed = [verdict for verdict in verdicts if verdict.claimed]
-    others = [verdict for verdict in verdicts if not verdict.claimed]
-    lines += ["", "## Methods that claim a case", "", *_markdown_table(claimed)]
-    if others:
-        lines += ["", "## Methods that do not", "", OTHERS, "", *_markdown_table(others)]
-        lines += ["", "What they missed:", ""]
-        lines += [f"- `{v.case}`, {v.method}: {v.refused or '; '.join(v.missed)}" for v in others if v.missed]
-    return "\n".join(lines) + "\n"
+def _markdown(verdicts: "Sequence[Verdict]") -> str:
+    """How each method did in all; then each case with its title and a table, the claiming methods first."""
+    lines = ["# Hard cases", "", INTRODUCTION, ""]
+    if not all(verdict.claimed for verdict in verdicts):
+        lines += [OTHERS, "", *_totals(verdicts), ""]
+    for title, of_title in groupby(verdicts, key=lambda verdict: verdict.case.scenario.title):
+        lines += [f"## {title}", ""]
+        for name, of_case in groupby(of_title, key=lambda verdict: verdict.case.name):
+            lines += [f"`{name}`", "", *_table(list(of_case)), ""]
+    return "\n".join(lines).rstrip() + "\n"
 
 
 INTRODUCTION = """\
-Written by `continuum-dyn hard`, which runs the scenarios of a folder and holds each to the bounds of its
-table `[expect]`. Error: largest distance of the tip from a much tighter run. Work: segment evaluations. Time:
-solving alone, with kernels loaded."""
+Written by `continuum-dyn hard`, which runs the scenarios of a folder and holds
+each to its bounds ([theory](theory.md), "Hard cases"). Error: largest distance
+of the tip from a much tighter run by the last of the methods that claim the
+case. Work: segment evaluations. Time: solving alone, with kernels loaded. Used:
+the largest part of what a bound allows."""
 
 OTHERS = f"""\
-The same cases by every other method, {PATIENCE:g} s for each; refused: the method cannot integrate such a
-scene. Missed: it broke a bound."""
+Below the methods that claim a case, in brackets, are those that do not: each has
+{PATIENCE:g} s. In all, where each method kept every bound, and where it did not:"""
 
 
-def _markdown_table(verdicts: "Iterable[Verdict]") -> list[str]:
-    lines = ["| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
-    lines += ["| " + " | ".join((verdict.case, *_row(verdict))) + " |" for verdict in verdicts]
+def _totals(verdicts: "Iterable[Verdict]") -> list[str]:
+    """For each method, in how many cases it kept the bounds, and how it failed in the others."""
+    kinds: dict[str, Counter[str]] = {}
+    for verdict in verdicts:
+        kinds.setdefault(verdict.method, Counter())[_kind(verdict)] += 1
+    names = ("kept", "bound missed", "out of time", "diverged", "refused")
+    lines = ["| method | " + " | ".join(names) + " |", "|---" + "|--:" * len(names) + "|"]
+    return lines + [
+        f"| {method} | " + " | ".join(str(found[name] or "") for name in names) + " |"
+        for method, found in kinds.items()
+    ]
+
+
+def _kind(verdict: "Verdict") -> str:
+    if verdict.run is None:
+        return "refused"
+    outcome = str(verdict.run.outcome)
+    named = {"budget_exceeded": "out of time", "diverged": "diverged"}
+    return named.get(outcome, "bound missed") if verdict.missed else "kept"
+
+
+def _table(verdicts: "Sequence[Verdict]") -> list[str]:
+    lines = ["| " + " | ".join(COLUMNS) + " |", "|---|---" + "|--:" * 4 + "|---|"]
+    for verdict in verdicts:
+        method, *cells, used = _row(verdict)
+        if verdict.missed:
+            used = _failing(verdict)
+        lines.append("| " + " | ".join((method if verdict.claimed else f"({method})", *cells, used)) + " |")
     return lines
+
+
+def _failing(verdict: "Verdict") -> str:
+    """What a method missed, in short."""
+    if verdict.bounds:
+        return "missed: " + ", ".join(bound.name for bound in verdict.bounds if not bound.kept)
+    if verdict.run is None or verdict.run.trajectory is None:
+        return "missed"
+    return f"at {duration(float(verdict.run.trajectory.time[-1]))}"

@@ -7,6 +7,7 @@ from pydantic.dataclasses import dataclass
 from statics.arm import Arm
 from statics.checked import STRICT
 from statics.effects.effect import Account, Pair, Place
+from statics.errors import InputError
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -27,5 +28,9 @@ class Inertia:
         return [Pair(tuple(-m.mass * a for a in m.acceleration), m.position) for m in at.masses]
 
     def columns(self, arm: Arm) -> dict[str, float]:
-        """None of its own."""
+        """None of its own. Raises ``InputError`` for an arm without any mass."""
+        if arm.total_mass == 0.0:
+            raise InputError(
+                "effect 'inertia': nothing of the arm has mass. Give disk_mass, core_density or a payload."
+            )
         return {}

@@ -33,7 +33,7 @@ def choose(dynamics: Dynamics, start: np.ndarray, span: Span, duration: float, e
     """
     scene = dynamics.scene
     if scene.arm.massless_nodes:
-        return Choice("chain", "nodes between disks carry no mass, which no other method can do with")
+        return Choice("chain", "some nodes carry no mass, which no other method can do with")
     if dissipated_by(scene) and dynamics.size > FEW:
         return Choice("chain", f"the scene is damped, and {dynamics.size} coordinates make it stiff")
     if dissipated_by(scene):
@@ -57,7 +57,7 @@ def check(scene: Scene, method: Method) -> None:
     of_core = [effect for effect in scene.effects if effect.place == "segment" and effect.name in damping]
     if scene.arm.massless_nodes and (method != "chain" or not of_core):
         raise InputError(
-            "the nodes between disks carry no mass: only damping of the core can move them, and only method "
+            "some nodes carry no mass: only damping of the core can move them, and only method "
             f'"chain"; this is a {"damped" if of_core else "free"} motion by "{method}". '
             "Give the arm's core_density, or effect material_damping and that method."
         )

@@ -16,7 +16,8 @@ Arguments travel in groups:
 - ``method``: a, c, error weights, predictor of the tableau, and ``lasting``, the time (s) for which an error
   of the rates is taken to last;
 - ``stages``: q, u, w, shape (stages, n, dofs);
-- ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 2): row r is the end of step r.
+- ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,
+  its powers, in and dissipated, those at Lobatto's two inner points of that step and at its end.
 """
 
 import math
@@ -37,6 +38,7 @@ MOST_ITERATIONS = 8
 """Newton iterations after which a stage is given up."""
 STAGE_PART = 0.02
 """Part of the tolerance that a stage's equations may be off by."""
+ROOT_5 = math.sqrt(5.0)
 SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 
 GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
@@ -82,28 +84,26 @@ def solve_stage(
     arm: "Moving",
     chain: np.ndarray,
     work: np.ndarray,
-) -> tuple[int, float, float, float]:
+) -> tuple[int, float]:
     """Newton's method for one ``stage``: its q, u and w (n, dofs), w from its predictor; ``allowed`` in m.
 
-    Returns the iterations (negative if it did not converge), the rate of convergence, power in and power
-    dissipated.
+    Returns the iterations (negative if it did not converge), and the rate of convergence.
     """
     q, u, w = stage
     _, segments, disks = arm
     residual, descent, change = work[0], work[1], work[2]
     start = (g, g * g, *ELIMINATE_START[2:])
-    power_in, dissipated, last = 0.0, 0.0, 0.0
-    iterations = 0
+    last, iterations = 0.0, 0
     while True:
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 u[i, k] = known_u[i, k] + g * w[i, k]
                 q[i, k] = known_q[i, k] + g * u[i, k]
         if iterations < 0 or (iterations > 0 and last * rate <= allowed * (1.0 - rate)):
-            return iterations, rate, power_in, dissipated
+            return iterations, rate
         if iterations == MOST_ITERATIONS:
-            return -iterations, rate, power_in, dissipated
-        power_in, dissipated = motion_sweep(q, u, w, inputs, segments, disks, chain)
+            return -iterations, rate
+        motion_sweep(q, u, w, inputs, segments, disks, chain)
         residual_sweep(disks, chain, residual)
         eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
         substitute_sweep(chain, descent, change)
@@ -116,7 +116,7 @@ def solve_stage(
         last = size
         iterations += 1
         if rate >= 0.9 or not math.isfinite(size):
-            return -iterations, 0.5, power_in, dissipated
+            return -iterations, 0.5
 
 
 def step_once(
@@ -131,13 +131,12 @@ def step_once(
     work: np.ndarray,
     stages: "Moving",
     next_y: np.ndarray,
-    next_power: np.ndarray,
 ) -> tuple[float, float, int]:
     """All stages of one step from (t, y), whose first acceleration is known.
 
-    The new state goes into ``next_y`` (without the integrals of the power), its powers into ``next_power``;
-    its acceleration is the last stage's. Returns the error (m; infinite if a stage did not converge), the
-    rate of convergence, and the Newton iterations.
+    The new state goes into ``next_y`` (without the integrals of the power); its acceleration is the last
+    stage's. Returns the error (m; infinite if a stage did not converge), the rate of convergence, and the
+    Newton iterations.
     """
     a, c, error_weights, predictor, lasting = method
     stage_q, stage_u, stage_w = stages
@@ -152,7 +151,7 @@ def step_once(
     for s in range(1, count):
         prepare(s, h, y, a, predictor, flat_u, flat_w, known_q, known_u)
         inputs_at(t + c[s] * h, arm[0], inputs)
-        took, rate, next_power[0], next_power[1] = solve_stage(
+        took, rate = solve_stage(
             work[3],
             work[4],
             a[s, s] * h,
@@ -207,7 +206,7 @@ def advance(
     so that the ones before it are not lost with it. Returns how it ended, the steps taken, the next step's
     size, the rate of convergence, the rejected steps, and the Newton iterations.
     """
-    times, states, accelerations, powers = records
+    times, states, accelerations, _ = records
     count = len(method[1])
     _, n, dofs = accelerations.shape
     shape = (count, n, dofs)
@@ -237,7 +236,6 @@ def advance(
             work,
             stages,
             states[taken + 1],
-            powers[taken + 1],
         )
         iterations += took
         if not error <= tolerance:
@@ -278,20 +276,26 @@ def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, wor
     _, n, dofs = accelerations.shape
     size = n * dofs
     pieces, segments, disks = arm
-    inputs, between = np.empty(INPUTS), np.empty((2, states.shape[1]))
+    inputs, between = np.empty(INPUTS), np.empty((3, states.shape[1]))
     h = times[row] - times[row - 1]
-    middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / math.sqrt(5.0)
-    at = np.array([middle - apart, middle + apart])
-    interpolate(at, records, row - 1, between)
-    for part in range(2):
-        ends = powers[row - 1, part] + powers[row, part]
-        states[row, 2 * size + part] = states[row - 1, 2 * size + part] + h / 12.0 * ends
-    for m in range(2):
+    middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / ROOT_5
+    at = np.array([middle - apart, middle + apart, times[row]])
+    interpolate(at[:2], records, row - 1, between)
+    between[2] = states[row]
+    for m in range(3):
         inputs_at(at[m], pieces, inputs)
         q, u = between[m, :size].reshape((n, dofs)), between[m, size : 2 * size].reshape((n, dofs))
         power_in, dissipated = motion_sweep(q, u, work[0], inputs, segments, disks, chain)
-        states[row, 2 * size] += 5.0 * h / 12.0 * power_in
-        states[row, 2 * size + 1] += 5.0 * h / 12.0 * dissipated
+        powers[row, m, 0], powers[row, m, 1] = power_in, dissipated
+    for part in range(2):
+        start, first, second, end = (
+            powers[row - 1, 2, part],
+            powers[row, 0, part],
+            powers[row, 1, part],
+            powers[row, 2, part],
+        )
+        gained = h / 12.0 * (start + 5.0 * (first + second) + end)
+        states[row, 2 * size + part] = states[row - 1, 2 * size + part] + gained
 
 
 def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") -> float:
@@ -306,7 +310,7 @@ def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") ->
     inputs_at(t, pieces, inputs)
     times[0], states[0] = t, y
     q, u = states[0, : n * dofs].reshape((n, dofs)), states[0, n * dofs : 2 * n * dofs].reshape((n, dofs))
-    powers[0] = acceleration(q, u, inputs, segments, disks, chain, accelerations[0])
+    powers[0, 2] = acceleration(q, u, inputs, segments, disks, chain, accelerations[0])
     return displacement(chain, accelerations[0])
 
 
@@ -314,7 +318,7 @@ def interpolate(at: np.ndarray, records: "Records", row: int, found: np.ndarray)
     """States at the increasing times ``at``, from the step after ``row`` on, into ``found``, (len(at), size).
 
     Quintic Hermite for coordinates, from their rates and accelerations at both ends of a step; its
-    derivative for rates; cubic for the two integrals of powers.
+    derivative for rates; the integrals of the powers are those of the cubics through their four values.
     """
     times, states, accelerations, powers = records
     _, n, dofs = accelerations.shape
@@ -352,8 +356,11 @@ def interpolate(at: np.ndarray, records: "Records", row: int, found: np.ndarray)
             )
         for part in range(2):
             y0, y1 = states[row, 2 * size + part], states[row + 1, 2 * size + part]
+            power0, power1 = powers[row, 2, part], powers[row + 1, 2, part]
+            apart = ROOT_5 * (powers[row + 1, 0, part] - powers[row + 1, 1, part])
             found[m, 2 * size + part] = (
                 y0
                 + s2 * (3.0 - 2.0 * s) * (y1 - y0)
-                + h * s * rest * (rest * powers[row, part] - s * powers[row + 1, part])
+                + h * s * rest * (rest * power0 - s * power1)
+                + 1.25 * h * s2 * rest * rest * (apart + power1 - power0)
             )

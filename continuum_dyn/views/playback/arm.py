@@ -23,7 +23,7 @@ from continuum_dyn.views.playback.targets import resting_rows
 
 MOST_DISKS = 100
 POINTS_PER_SEGMENT = 12
-MOST_POINTS = 600
+MOST_POINTS = 300
 """Points of a backbone, as far as one for each segment allows."""
 
 CORE_WIDTH = 4.0

@@ -67,13 +67,15 @@ def on_screen(points: np.ndarray) -> np.ndarray:
     return points * np.array([1.0, -1.0])
 
 
-def send(recording: rr.RecordingStream, entity: str, drawn: Drawn, at: rr.TimeColumn) -> None:
-    """Send what is drawn; what never changes is not put on the time line."""
-    if isinstance(drawn, Arrows):
-        _send_arrows(recording, entity, drawn, at)
-    elif drawn.counts is None:
+def send(recording: rr.RecordingStream, entity: str, drawn: Drawn, at: rr.TimeColumn | None = None) -> None:
+    """Send what is drawn, each frame at its time; what never changes has none."""
+    if at is None:
+        assert isinstance(drawn, Lines)
         recording.log(entity, rr.LineStrips2D.from_fields(**_style(drawn), **_strips(drawn)), static=True)
+    elif isinstance(drawn, Arrows):
+        _send_arrows(recording, entity, drawn, at)
     else:
+        assert drawn.counts is not None
         recording.log(entity, rr.LineStrips2D.from_fields(**_style(drawn)), static=True)
         columns = rr.LineStrips2D.columns(**_strips(drawn)).partition(drawn.counts)
         recording.send_columns(entity, [at], columns)

@@ -6,7 +6,7 @@ import rerun as rr
 from continuum_dyn.views.playback.colors import BLACK, GREY, diverging
 from continuum_dyn.views.playback.drawing import Drawn, Lines, every_frame
 from continuum_dyn.views.playback.measures import Measures
-from continuum_dyn.views.playback.story import Story, spread
+from continuum_dyn.views.playback.story import Story
 
 WIDTH, HEIGHT = 900, 300
 """Of the picture, pixels."""
@@ -28,24 +28,31 @@ def picture(story: Story, measures: Measures) -> np.ndarray:
 
 def axes(story: Story) -> dict[str, Drawn]:
     """Ticks with what they stand for."""
-    marks = story.times[0] + np.ptp(story.times) * np.linspace(0.0, 1.0, MOST_TICKS)
-    unit = "s" if story.moves else ""
-    named = "time" if story.moves else "point"
-    time_labels = [f"{named} {mark:.4g} {unit}".strip() for mark in marks[:1]]
-    time_labels += [f"{mark:.4g} {unit}".strip() for mark in marks[1:]]
-    x = _place_of(story, marks)
-    below = np.stack([np.stack([x, x], axis=-1), np.tile([BOTTOM, BOTTOM - 24.0], (len(x), 1))], axis=-1)
-    segments = story.columns["curvature"].shape[1]
-    numbers = 1 + spread(segments, MOST_TICKS)
-    y = BOTTOM + (numbers - 0.5) * HEIGHT / segments
-    beside = np.stack([np.tile([-100.0, 0.0], (len(y), 1)), np.stack([y, y], axis=-1)], axis=-1)
-    segment_labels = [f"segment {number}" for number in numbers]
     frame = np.array([[[0.0, BOTTOM], [WIDTH, BOTTOM], [WIDTH, TOP], [0.0, TOP], [0.0, BOTTOM]]])
     return {
-        "time_axis": Lines(below, BLACK, 0.0, 2.0, labels=time_labels),
-        "segment_axis": Lines(beside, BLACK, 0.0, 2.0, labels=segment_labels),
+        "time_axis": _time_axis(story),
+        "segment_axis": _segment_axis(story.columns["curvature"].shape[1]),
         "frame": Lines(frame, GREY, 1.0, 3.0),
     }
+
+
+def _time_axis(story: Story) -> Lines:
+    marks = story.times[0] + np.ptp(story.times) * np.linspace(0.0, 1.0, MOST_TICKS)
+    marks = marks if story.moves else np.unique(marks.round())
+    labels = [f"{mark:.4g} s" if story.moves else f"{mark:.0f}" for mark in marks]
+    labels[0] = ("time " if story.moves else "point ") + labels[0]
+    x = _place_of(story, marks)
+    strips = np.stack(
+        [np.stack([x, x], axis=-1), np.tile([BOTTOM - 10.0, BOTTOM - 50.0], (len(x), 1))], axis=-1
+    )
+    return Lines(strips, BLACK, 0.0, 2.0, labels=labels)
+
+
+def _segment_axis(segments: int) -> Lines:
+    numbers = np.arange(1, segments + 1, -(-segments // MOST_TICKS))
+    y = BOTTOM + (numbers - 0.5) * HEIGHT / segments
+    strips = np.stack([np.tile([-100.0, 0.0], (len(y), 1)), np.stack([y, y], axis=-1)], axis=-1)
+    return Lines(strips, BLACK, 0.0, 2.0, labels=[f"segment {number}" for number in numbers])
 
 
 def cursor(story: Story, rows: np.ndarray) -> Lines:

@@ -31,7 +31,8 @@ def legend(drawn: Mapping[str, Drawn], stories: Sequence[Story], measures: Measu
     for story in stories if len(stories) > 1 else ():
         y -= 0.09 * size
         strip = np.array([[[left, y], [left + 0.2 * size, y]]])
-        parts[story.at("arm", "name")] = Lines(strip, own_color(story, BLACK), 6.0, 5.0, labels=[story.name])
+        parts[story.at("arm", "line")] = Lines(strip, own_color(story, BLACK), 6.0, 5.0)
+        parts[story.at("arm", "name")] = Lines(strip, BLACK, 0.0, 4.0, labels=[story.name])
     return parts
 
 

@@ -14,7 +14,8 @@ from continuum_dyn.views.playback.targets import resting_rows
 from statics.quantities import QUANTITIES
 
 MOST_SERIES = 8
-ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy", "input_work", "dissipated_energy")
+STORED = ("kinetic_energy", "elastic_energy", "gravity_energy")
+LEDGER = ("input_work", "dissipated_energy")
 POWERS = ("input_power", "dissipated_power")
 LINE_WIDTH, THIN = 1.5, 0.8
 
@@ -48,7 +49,7 @@ def plots_of(story: Story) -> dict[str, Plot]:
         "load_factor": Plot(QUANTITIES["load_factor"].label, _load_factors(columns)),
         "tip_x": Plot("tip x (m)", _tip(story, "disk_x")),
         "tip_y": Plot("tip y (m)", _tip(story, "disk_y")),
-        "energy": Plot("energy since the start (J)", _since_start(columns)),
+        "energy": Plot("energy since the start (J)", _since_start(story)),
         "power": Plot(
             "power (W)", [Series(_words(name), columns[name]) for name in POWERS if name in columns]
         ),
@@ -72,24 +73,38 @@ def _curvature(columns: Mapping[str, np.ndarray]) -> list[Series]:
     return [Series(f"segment {n + 1}", curvature[n]) for n in spread(len(curvature), MOST_SERIES)]
 
 
-def _since_start(columns: Mapping[str, np.ndarray]) -> list[Series]:
-    """Changes, so that the ledger can be read: input work is what is stored and dissipated."""
-    return [Series(_words(name), columns[name] - columns[name][0]) for name in ENERGIES if name in columns]
+def _since_start(story: Story) -> list[Series]:
+    """Changes, so that the ledger can be read: input work is what is stored and dissipated.
+
+    Beside other runs, what is stored is shown as a whole.
+    """
+    columns = story.columns
+    if story.name:
+        stored = np.sum([columns[name] for name in STORED if name in columns], axis=0)
+        columns = {"stored_energy": stored, **{name: columns[name] for name in LEDGER if name in columns}}
+    return [
+        Series(_words(name), columns[name] - columns[name][0])
+        for name in ("stored_energy", *STORED, *LEDGER)
+        if name in columns
+    ]
 
 
 def _steps(columns: Mapping[str, np.ndarray]) -> list[Series]:
-    return [Series("step", np.log10(columns["step_size"]))] if "step_size" in columns else []
+    if not columns.get("step_size", np.zeros(1)).any():
+        return []
+    taken = np.where(columns["step_size"] > 0.0, columns["step_size"], np.nan)
+    return [Series("step", np.log10(taken))]
 
 
 def _tip(story: Story, name: str) -> list[Series]:
-    """The tip, where it would rest under the inputs of the moment, and the band that counts as settled."""
+    """The tip, where it would rest under the moment's inputs and, of a run alone, the settled's band."""
     series = [Series("tip", story.columns[name][:, -1])]
     resting = resting_rows(story.log) if story.moves else np.array([-1])
     if not (resting >= 0).any():
         return series
     target = np.where(resting >= 0, story.log.equilibria[name][resting, -1], np.nan)
     series.append(Series("static target", target))
-    if story.scenario is not None and isinstance(story.scenario.study, StepResponseStudy):
+    if not story.name and story.scenario is not None and isinstance(story.scenario.study, StepResponseStudy):
         within = story.scenario.settled_within
         series += [Series("settled band", target + way, is_bound=True) for way in (-within, within)]
     return series

@@ -3,10 +3,11 @@
 Positions become float32 and long motions are thinned out, so the log stays the truth.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import rerun as rr
 
 from continuum_dyn.record import Log
@@ -14,7 +15,7 @@ from continuum_dyn.views.playback import heat_map, plots
 from continuum_dyn.views.playback.about import about, ending
 from continuum_dyn.views.playback.arm import moving_parts, still_parts
 from continuum_dyn.views.playback.blueprint import blueprint, words_alone
-from continuum_dyn.views.playback.drawing import send, when
+from continuum_dyn.views.playback.drawing import Drawn, send, when
 from continuum_dyn.views.playback.legend import legend
 from continuum_dyn.views.playback.measures import Measures, measures_of
 from continuum_dyn.views.playback.story import Story, names_of, story_of
@@ -73,33 +74,51 @@ def _check_alike(stories: Sequence[Story]) -> None:
             )
 
 
+def send_story(recording: rr.RecordingStream, story: Story) -> None:
+    """Send all that is told of one run, with its layout."""
+    _send_stories(recording, [story])
+
+
 def _send_stories(recording: rr.RecordingStream, stories: Sequence[Story]) -> None:
     measures = measures_of(stories)
     drawn, plotted = {}, {}
     for story in stories:
-        moving = moving_parts(story, story.frames, measures)
-        for entity, part in moving.items():
-            send(recording, entity, part, when(story, story.frames))
-        drawn |= moving | still_parts(story)
+        drawn |= send_rows(recording, story, measures, story.frames, story.samples)
         for name, plot in plots.plots_of(story).items():
             plotted.setdefault(name, []).append(plot)
-            entity = f"series/{name}/{story.name}".rstrip("/")
-            plots.send_style(recording, entity, story, plot)
-            plots.send_values(recording, entity, story, plot, story.samples)
-        _send_beside(recording, story, measures)
-    drawn |= legend(drawn, stories, measures)
-    for entity, part in drawn.items():
-        if getattr(part, "counts", 0) is None:
-            send(recording, entity, part, when(stories[0], stories[0].frames[:1]))
+    drawn |= send_beside(recording, stories, measures, drawn)
     # It becomes the active layout: bounds and ranges of the logs before would not fit these.
     recording.send_blueprint(blueprint(stories, drawn, plotted))
 
 
-def _send_beside(recording: rr.RecordingStream, story: Story, measures: Measures) -> None:
-    """The picture of the curvature, and the words."""
-    at = when(story, story.frames)
-    heat_map.send_picture(recording, story.at("curvature", "picture"), heat_map.picture(story, measures))
-    for name, part in heat_map.axes(story).items():
-        send(recording, story.at("curvature", name), part, at)
-    send(recording, story.at("curvature", "now"), heat_map.cursor(story, story.frames), at)
-    recording.log(story.at("about"), rr.TextDocument(about(story), media_type="text/markdown"), static=True)
+def send_rows(
+    recording: rr.RecordingStream, story: Story, measures: Measures, frames: np.ndarray, samples: np.ndarray
+) -> dict[str, Drawn]:
+    """Send what changes with time: drawn at the rows ``frames``, plotted at ``samples``; what is drawn."""
+    moving = moving_parts(story, frames, measures)
+    for entity, part in (moving | {story.at("curvature", "now"): heat_map.cursor(story, frames)}).items():
+        send(recording, entity, part, when(story, frames))
+    for name, plot in plots.plots_of(story).items():
+        entity = "/".join(filter(None, ("series", name, story.name)))
+        plots.send_style(recording, entity, story, plot)
+        plots.send_values(recording, entity, story, plot, samples)
+    return moving
+
+
+def send_beside(
+    recording: rr.RecordingStream, stories: Sequence[Story], measures: Measures, drawn: Mapping[str, Drawn]
+) -> dict[str, Drawn]:
+    """Send what stays beside it, with the legend of what is drawn; what is drawn of it."""
+    still: dict[str, Drawn] = {}
+    for story in stories:
+        still |= still_parts(story)
+        picture = heat_map.picture(story, measures)
+        heat_map.send_picture(recording, story.at("curvature", "picture"), picture)
+        for name, part in heat_map.axes(story).items():
+            send(recording, story.at("curvature", name), part)
+        words = rr.TextDocument(about(story), media_type="text/markdown")
+        recording.log(story.at("about"), words, static=True)
+    still |= legend({**drawn, **still}, stories, measures)
+    for entity, part in still.items():
+        send(recording, entity, part)
+    return still
