@@ -38,7 +38,6 @@ SLOW = {
     "docs/how_to/scenario.md",
     "docs/how_to/settling.md",
     "docs/how_to/tension_ramp.md",
-    "docs/theory/rone2012.md",
     "docs/tutorial.md",
 }
 """Pages that take more than a second or two, most of it for what they compile."""
