@@ -8,7 +8,7 @@ import numpy as np
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.trajectory import Trajectory, joined, trajectory_of
 
-INTERVAL = 0.2
+INTERVAL = 1.0
 """Shortest time between two blocks, s: seldom enough to cost little, however many samples a run has."""
 
 Listener = Callable[[Trajectory], None]
