@@ -221,7 +221,12 @@ def _one_by_one(
     if any(point.stable is None for point in points):
         message = why_not_judged(scenario.scene) or ""
         if why_not_judged(scenario.scene) is None:
-            points, growths = _judged(Dynamics(scenario.scene), points)
+            try:
+                with allowed():  # kernels may have to be compiled
+                    points, growths = _judged(Dynamics(scenario.scene), points)
+            except KeyboardInterrupt:
+                told = f"interrupted after {len(points)} of {len(inputs)} points, of unknown stability"
+                return Run(scenario, Outcome.INTERRUPTED, told, points, solve_time=solve_time)
     outcome = Outcome.COMPLETED
     before: Equilibrium | None = None
     for point, growth, asked in zip(points, growths, inputs, strict=False):
