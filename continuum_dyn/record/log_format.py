@@ -1,6 +1,6 @@
 """The format of logs, as data: what is in which group, over which dimensions, of which type.
 
-``docs/log_format.md`` says it in words. Units and meanings are the glossary's.
+``docs/reference/log_format.md`` says it in words. Units and meanings are the glossary's.
 """
 
 from dataclasses import dataclass, fields
