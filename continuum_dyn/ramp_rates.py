@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import ceil
 
 import numpy as np
 
@@ -37,12 +38,14 @@ def measured(
 
 def _lag_at(scenario: Scenario, own: float, rate: float, progress: Callable[[str], None]) -> RateLag:
     progress(f"at {rate:.3g} per s")
-    faster = at_pace(scenario, rate / own)
+    pace = rate / own
+    faster = at_pace(scenario, pace)
     assert isinstance(faster.study, MotionStudy)
-    run = simulate(replace(faster, study=replace(faster.study, static_path=True)))
-    tips, path = run.tips, run.static_path
-    if tips is None or len(path) != len(tips) or not all(point.found for point in path):
-        raise InputError(
-            f"run at {rate / own:.3g} times its pace the ramp ends: {run.outcome} {run.message}."
-        )
-    return RateLag(rate, float(gap(tips, np.array([point.tip[:2] for point in path])).max()))
+    samples = max(faster.study.samples, 1 + ceil((faster.study.samples - 1) / pace))  # no farther apart
+    run = simulate(replace(faster, study=replace(faster.study, samples=samples, static_path=True)))
+    found = [sample for sample, point in enumerate(run.static_path) if point.found]
+    if run.tips is None or not found:
+        told = run.message or "no equilibrium of its static path was found"
+        raise InputError(f"run at {pace:.3g} times its pace the ramp ends as {run.outcome}: {told}.")
+    rests = np.array([run.static_path[sample].tip[:2] for sample in found])
+    return RateLag(rate, float(gap(run.tips[found], rests).max()))

@@ -83,7 +83,7 @@ def _envelope(found: Settling) -> tuple[np.ndarray, np.ndarray]:
 def _draw_distance(axes: Any, found: Settling, clock: Axis, place: Axis) -> None:
     travel = place.per_si * found.travel
     away = np.abs(place.per_si * found.along - travel)
-    axes.semilogy(_since(found, clock), np.maximum(away, DEEPEST * travel), "k-", lw=1.0, label="motion")
+    axes.semilogy(_since(found, clock), np.where(away > 0.0, away, np.nan), "k-", lw=1.0, label="motion")
     for (_, band), line in zip(BANDS.items(), ("--", "-.", ":"), strict=True):
         axes.axhline(band * travel, color="0.4", lw=1.0, ls=line, label=f"{100 * band:g} % of the travel")
     if found.ring_down is not None:
