@@ -22,7 +22,7 @@ from statics import Scene
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 RATE = 1000
 """Samples for each second of computing."""
-CASES = ((4, 3000.0), (16, 1000.0))
+CASES = ((4, 1500.0), (16, 500.0))
 """Disks of the arm, and duration of its motion (s)."""
 REPEATS = 3
 BOUND = 0.05
@@ -36,7 +36,7 @@ def driven(disks: int, duration: float, samples: int) -> Scenario:
     return replace(
         given,
         scene=Scene(arm, given.scene.effects),
-        tension=(Sine(1.0, 0.9, 20.0),),
+        drives=(Sine(1.0, 0.9, 20.0),),
         study=MotionStudy(duration, samples=samples),
     )
 

@@ -82,6 +82,10 @@ def replaced(name: str, values: object) -> Callable[[h5py.File], None]:
             "log format 1; .* reads format 2",
         ),
         (lambda file: file.__delitem__("arm"), "group arm is missing"),
+        (
+            lambda file: file["arm"].attrs.__delitem__("disk_spacing"),
+            "/arm: attribute disk_spacing is missing",
+        ),
         (replaced("arm", h5py.ExternalLink("other.h5", "/")), "/arm: a link that leads elsewhere"),
         (
             replaced("trajectory/disk_x", h5py.SoftLink("/arm/disk")),

@@ -50,6 +50,7 @@ def departures(file: h5py.File) -> Iterator[str]:
     yield from _wrong_tables(file)
     for name, known in GROUPS.items():
         yield from _wrong_group(file, name, known)
+    yield from _wrong_arm(file)
     yield from _too_large(file)
 
 
@@ -163,6 +164,15 @@ def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Ite
         if wrong:
             yield wrong
     yield from _wrong_shapes(group, datasets, known)
+
+
+def _wrong_arm(file: h5py.File) -> Iterator[str]:
+    arm = linked(file, "arm", h5py.Group)[0]
+    if arm is None:
+        return
+    spacing = {} if "disk_spacing" in arm else {"disk_spacing": float}
+    for wrong in _wrong_attributes(arm, {"disks": int, "subsegments": int, **spacing}, {}):
+        yield f"/arm: {wrong}"
 
 
 def _wrong_type(dataset: h5py.Dataset, column: Column) -> str:
