@@ -5,7 +5,8 @@ A page is followed from its top, in a folder of its own that holds the scenarios
 - ``console``: lines that begin with "$ " are commands. The lines below one are of what it prints, in that
   order; "..." stands for anything. A command succeeds, unless "$ echo $?" below it shows another exit status.
 - ``python``: run. A block ``text`` right below it is what it prints, in the same way.
-- ``toml`` that begins with "# NAME.toml": a file that is written. Other blocks are only shown.
+- ``toml`` that begins with "# NAME.toml": a file that is written. Other blocks are only shown: among them the
+  few commands that serve until Ctrl-C, or take minutes and have tests of their own.
 
 ``make`` is only asked what it would do, since it installs; the checks before anything lands run it. ``play``
 writes a file and opens no window.
