@@ -293,7 +293,7 @@ def _motion(
         return _interrupted_early(scenario)
     stretches = spans(scenario.profiles, study.duration)
     started = time.perf_counter()
-    start = statics.solve(scenario.initial_inputs)
+    (start,) = ramp(statics, [scenario.initial_inputs])
     if not start.found:
         limit = _limit(statics, start, scenario.initial_inputs, None)
         solve_time = time.perf_counter() - started
