@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
 
-.PHONY: help run test test-all check lint format types contracts benchmark pictures docs constraints clean
+.PHONY: help run test test-slow test-all check lint format types contracts benchmark pictures docs constraints clean
 
 help: ## List the targets.
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  \1\t/' | expand -t 16
@@ -15,8 +15,10 @@ run: $(VENV)/run ## Simulate the step response and say where its log is.
 test: $(VENV)/dev ## The default part of the tests.
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
-test-all: $(VENV)/dev ## All tests, the slow ones included.
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile -m "slow or not slow"
+test-slow: $(VENV)/dev ## The tests that the default part leaves out.
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile -m slow
+
+test-all: test test-slow ## All tests.
 
 check: lint types contracts ## Lint, types and import contracts.
 
