@@ -10,8 +10,10 @@ import pytest
 from conftest import SCENARIOS
 from playback_entities import entities_of
 from rerun.chunk import RrdReader
+from typer.testing import CliRunner
 
 from continuum_dyn import load_scenario, simulate
+from continuum_dyn.cli import app
 from continuum_dyn.record import Log, read_log, write_log
 from continuum_dyn.views.playback import story as playback_story
 from continuum_dyn.views.playback.arm import POINTS_PER_SEGMENT
@@ -189,3 +191,13 @@ def test_nothing_is_left_where_it_cannot_be_written(motion: Log, tmp_path: Path,
     with pytest.raises(LogError, match="cannot write the recording"):
         save([motion], tmp_path / place)
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_play_keeps_the_recording_in_a_file(motion: Log, tmp_path: Path) -> None:
+    kept = tmp_path / "kept.rrd"
+    result = CliRunner().invoke(app, ["play", str(motion.path), "--save", str(kept)])
+    assert result.exit_code == 0
+    assert points(entities_of(kept)["/arm/rim"]).shape == points(shown(motion, tmp_path)["/arm/rim"]).shape
+    refused = CliRunner().invoke(app, ["play", str(motion.path), "--web", "--save", str(kept)])
+    assert refused.exit_code == 2
+    assert "Give one of them" in refused.output
