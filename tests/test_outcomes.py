@@ -12,7 +12,7 @@ from conftest import ANY_METHOD, MOTION, moving, rone2012
 from continuum_dyn import Run, Scenario, simulate
 from continuum_dyn.dynamics import Dynamics, Observation
 from continuum_dyn.effects import MaterialDamping
-from continuum_dyn.integrators import Budget
+from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.profiles import Constant, Profile, Span, Step
 from continuum_dyn.study import Method, MotionStudy, RampStudy, Solver, StepResponseStudy
 from statics import InputError, Outcome, Scene
@@ -220,6 +220,16 @@ def test_exit_status_follows_the_outcome(outcome: str, status: int) -> None:
 def test_scenario_needs_a_tension_for_each_cable(tension: tuple[Profile, ...]) -> None:
     with pytest.raises(InputError, match="tensions or displacements given for 1 cable"):
         Scenario(rone2012(), tension, MotionStudy(1.0))
+
+
+def test_step_that_was_taken_is_sampled_even_if_the_run_must_end_by_then() -> None:
+    """DOP853 asks for the motion's rate again to interpolate."""
+    monitor = Monitor(inspect=lambda _t, _y: None)
+    stepper: Any = METHODS["DOP853"](lambda _t, y: -y, 0.0, np.ones(1), 1.0, monitor=monitor)
+    stepper.step()
+    monitor.interruption.asked = True
+    middle = (stepper.t_old + stepper.t) / 2
+    assert stepper.dense_output()(middle) == pytest.approx(np.exp(-middle), rel=1e-6)
 
 
 def test_motion_without_inertia_is_refused_by_name() -> None:

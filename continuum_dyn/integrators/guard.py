@@ -132,6 +132,8 @@ class Guard(OdeSolver):
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
             self.status = "failed"
             return self.monitor.stop(Outcome.DIVERGED, f"{error} after t = {self.t:.6g} s")
+        finally:
+            self.stepping = False
         if self.status == "failed":
             return self.monitor.stop(Outcome.DIVERGED, f"{message} at t = {self.t:.6g} s")
         self.monitor.rejections += self.internal_rejections
