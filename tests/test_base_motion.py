@@ -187,6 +187,7 @@ def test_arm_moved_along_settles_where_the_statics_find_it(shaken: Scenario) -> 
     assert (run.equilibria[-1].base_x, run.equilibria[-1].base_theta) == pytest.approx((0.2, pi / 2))
 
 
+@pytest.mark.slow
 def test_shaken_base_swings_the_arm_as_its_linear_motion_says(shaken: Scenario) -> None:
     """Small and late: (i omega - A)^-1 of the exact Jacobian, pushed by the base's acceleration alone."""
     omega, size = 2 * pi * 23.0, 1e-6

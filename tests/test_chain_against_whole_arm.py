@@ -72,6 +72,7 @@ def test_accelerations_equal_kanes_method_on_the_whole_arm(
         assert relative_error(chain_accelerations(scene, q, u), kane_accelerations(scene, q, u)) < ROUNDING
 
 
+@pytest.mark.slow
 def test_accelerations_equal_kanes_method_where_cables_pass_nodes_between_disks() -> None:
     for disks, subsegments in ((1, 3), (2, 2)):
         scene = spanned_scene(disks, subsegments)
@@ -81,6 +82,7 @@ def test_accelerations_equal_kanes_method_where_cables_pass_nodes_between_disks(
             assert error < 10 * ROUNDING
 
 
+@pytest.mark.slow
 def test_accelerations_equal_kanes_method_for_a_heavy_core() -> None:
     for disks in (1, 2, 3):
         scene = heavy_scene(disks)

@@ -28,7 +28,7 @@ TENSION, RUBS = CableKind(), CableKind(rubs=True)
 LENGTH, BOTH = CableKind(driven_by_length=True), CableKind(driven_by_length=True, rubs=True)
 KINDS = [(RUBS,), (LENGTH,), (BOTH,), (BOTH, TENSION, RUBS)]
 ON_ANY_MESH = [
-    pytest.param(kinds, subsegments, marks=pytest.mark.slow if subsegments == 2 and kinds != (BOTH,) else ())
+    pytest.param(kinds, subsegments, marks=pytest.mark.slow if subsegments == 2 else ())
     for kinds in KINDS
     for subsegments in (1, 2)
 ]

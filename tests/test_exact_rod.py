@@ -291,6 +291,7 @@ def test_constant_curvature_misses_the_exact_tip_by_micrometres(tension: float, 
     assert tip_distance(rone2012(), tension) == pytest.approx(error * UM, abs=0.005 * UM)
 
 
+@pytest.mark.slow
 def test_program_and_rod_agree_where_curvature_is_constant() -> None:
     scene = weightless_core(disks=3, moment=1.3)
     np.testing.assert_allclose(equilibrium(scene).tip, exact_rod(scene).tip, atol=1e-14)

@@ -270,6 +270,7 @@ def test_jet_settles_further_round_than_a_force_that_keeps_its_direction(tmp_pat
     assert dead.tip[2] == pytest.approx(0.993, abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["chain", "explicit", "LSODA", "Radau", "DOP853"])
 def test_work_of_a_follower_is_booked_by_every_method(tmp_path: Path, method: Any) -> None:
     """Work in: the force along the disk's way, by the trapezoidal rule over fine samples."""

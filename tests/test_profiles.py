@@ -93,7 +93,7 @@ def test_every_corner_of_every_profile_ends_a_span() -> None:
     assert all(earlier.end == later.start for earlier, later in pairwise(stretches))
 
 
-@pytest.mark.parametrize("method", ["chain", "midpoint", "LSODA"])
+@pytest.mark.parametrize("method", ["chain", pytest.param("midpoint", marks=pytest.mark.slow), "LSODA"])
 def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     taken: list[tuple[float, float]] = []
     plain_step = METHODS[method].step

@@ -99,6 +99,7 @@ def drive(scene: Scene, method: Method = "chain", rtol: float = 1e-9) -> Scenari
     return Scenario(scene, (Sine(1.0, 0.9, 8.0),), study, Solver(method, rtol, 1e-3 * rtol))
 
 
+@pytest.mark.slow
 def test_chain_agrees_with_radau_on_its_exact_jacobian() -> None:
     scene = moving(meshed(2, density=7800.0))
     chain, radau = motion(drive(scene, rtol=1e-11)), motion(drive(scene, "Radau", 1e-9))

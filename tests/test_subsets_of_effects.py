@@ -177,7 +177,8 @@ def mass_for_damping(scene: Scene, q: np.ndarray, u: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "seed", [*range(4), 12, 27, *(pytest.param(k, marks=pytest.mark.slow) for k in range(4, 16) if k != 12)]
+    "seed",
+    [1, 3, 12, *(pytest.param(k, marks=pytest.mark.slow) for k in (*range(16), 27) if k not in (1, 3, 12))],
 )
 def test_subset_of_the_effects_agrees_with_kanes_method(seed: int) -> None:
     scene = sampled(seed)

@@ -50,6 +50,7 @@ def test_lists_of_equal_numbers_are_one_number() -> None:
     assert equilibrium(same, 1.0).tip == equilibrium(plain, 1.0).tip
 
 
+@pytest.mark.slow
 def test_rest_is_where_the_potential_energy_of_the_whole_arm_is_level() -> None:
     scene = tapered_scene(4)
     arm, tension = whole_arm(scene), np.array([1.5, 0.5])
