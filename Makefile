@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
 
-.PHONY: help run test test-all check lint format types contracts benchmark pictures constraints clean
+.PHONY: help run test test-slow test-all check lint format types contracts benchmark pictures docs constraints clean
 
 help: ## List the targets.
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  \1\t/' | expand -t 16
@@ -15,8 +15,10 @@ run: $(VENV)/run ## Simulate the step response and say where its log is.
 test: $(VENV)/dev ## The default part of the tests.
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
-test-all: $(VENV)/dev ## All tests, the slow ones included.
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile -m "slow or not slow"
+test-slow: $(VENV)/dev ## The tests that the default part leaves out.
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile -m slow
+
+test-all: test test-slow ## All tests.
 
 check: lint types contracts ## Lint, types and import contracts.
 
@@ -42,8 +44,11 @@ benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 	$(BIN)/python benchmarks/warm_run.py
 	$(BIN)/python benchmarks/energy.py
 
-pictures: $(VENV)/dev ## Make the pictures of the README again.
+pictures: $(VENV)/dev ## Make the pictures of the README and the pages again.
 	$(BIN)/python docs/pictures.py
+
+docs: $(VENV)/dev ## Make the pages of docs/ into a site, in build/docs.
+	$(BIN)/python -m sphinx -W --keep-going -q -d build/doctrees docs build/docs
 
 constraints: $(VENV)/dev ## Note the versions installed now.
 	(head -n 1 constraints.txt; $(BIN)/python -m pip freeze --exclude-editable) > constraints.new

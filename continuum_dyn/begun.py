@@ -15,8 +15,8 @@ class Begun:
     """What is known of it: the solver's settings, what it counted, and its samples, one at least.
 
     ``columns`` hold them by glossary name: ``time`` (samples,), coordinates and rates (samples, segments),
-    ``input_work``, ``dissipated_energy`` and ``elastic_energy`` (samples,). The last may lie between the
-    times that samples were asked for.
+    ``input_work``, ``dissipated_energy``, ``elastic_energy`` and ``step_size`` (samples,). The last sample
+    may lie between the times that samples were asked for.
     """
 
     solver: Solver

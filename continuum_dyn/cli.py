@@ -14,6 +14,7 @@ from continuum_dyn.commands import (
     cost,
     explain,
     hard,
+    info,
     init,
     modes,
     play,
@@ -24,6 +25,7 @@ from continuum_dyn.commands import (
     run,
     schema,
     settle,
+    validate,
 )
 from continuum_dyn.commands.shared_options import (
     Quiet,
@@ -43,8 +45,10 @@ COMMANDS = (
     ("Simulate and look", resume.resume),
     ("Simulate and look", play.play),
     ("Simulate and look", plot.plot),
+    ("Ask a log", info.info),
     ("Ask a log", settle.settle),
     ("Ask a log", ramp.ramp),
+    ("Ask a log", validate.validate),
     ("Understand", explain.explain),
     ("Understand", modes.modes),
     ("Understand", cost.cost),

@@ -107,7 +107,7 @@ def integrate(
     gathered = gathered or Samples(dynamics)
     samples = samples[samples > gathered.latest]
     done = int(np.searchsorted(samples, start, side="right"))
-    gathered.add(samples[:done], np.tile(y, (done, 1)), stretches[0].inputs(samples[:done]))
+    gathered.add(samples[:done], np.tile(y, (done, 1)), stretches[0].inputs(samples[:done]), np.zeros(done))
     counters: Counter[str] = Counter()
     before = None
     with warnings.catch_warnings():
@@ -138,7 +138,7 @@ def _add_last_reached(gathered: Samples, joined: Sequence[Span], reached: tuple[
     t, y = reached
     if t > gathered.latest:
         time = np.array([t])
-        gathered.add(time, y[None, :], inputs_of(joined, time))
+        gathered.add(time, y[None, :], inputs_of(joined, time), np.zeros(1))
 
 
 def _counted(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
@@ -200,9 +200,18 @@ def _solve(
         acceptable = stepper.t_old is not None and monitor.reached[0] == stepper.t
         if acceptable and until > done:
             times = at[done:until]
-            gathered.add(times, stepper.dense_output()(times).T, inputs_of(joined, times))
+            states = stepper.dense_output()(times).T
+            gathered.add(times, states, inputs_of(joined, times), _step_sizes(stepper, times))
             done = until
     return stepper
+
+
+def _step_sizes(stepper: Any, times: np.ndarray) -> np.ndarray:
+    """Of the solver's last step, or of the internal ones that it was made of, at times within it; s."""
+    ends = stepper.internal_times
+    if ends is None:
+        return np.full(times.size, (stepper.t - stepper.t_old) / stepper.internal_steps)
+    return np.diff(ends)[np.clip(np.searchsorted(ends, times) - 1, 0, len(ends) - 2)]
 
 
 def _options(dynamics: Dynamics, solver: Solver, joined: list[Span]) -> dict[str, Any]:

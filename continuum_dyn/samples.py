@@ -8,7 +8,7 @@ import numpy as np
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.trajectory import Trajectory, joined, trajectory_of
 
-INTERVAL = 0.2
+INTERVAL = 1.0
 """Shortest time between two blocks, s: seldom enough to cost little, however many samples a run has."""
 
 Listener = Callable[[Trajectory], None]
@@ -22,14 +22,14 @@ class Samples:
         self.dynamics, self.listener = dynamics, listener
         self.latest = -np.inf
         self.overflow: float | None = None
-        self._pending: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        self._pending: list[tuple[np.ndarray, ...]] = []
         self._blocks: list[Trajectory] = []
         self._told = time.monotonic()
 
-    def add(self, at: np.ndarray, states: np.ndarray, inputs: np.ndarray) -> None:
-        """Samples at these times (s), shapes (samples,), (samples, size) and (samples, inputs)."""
+    def add(self, at: np.ndarray, states: np.ndarray, inputs: np.ndarray, step_size: np.ndarray) -> None:
+        """Samples at these times (s), shapes (samples,), (samples, size), (samples, inputs), (samples,)."""
         if at.size:
-            self._pending.append((at, states, inputs))
+            self._pending.append((at, states, inputs, step_size))
             self.latest = float(at[-1])
         if self.listener is not None and time.monotonic() - self._told > INTERVAL:
             block = self._observed()
@@ -46,9 +46,9 @@ class Samples:
         """What was added since the last time, if there is any."""
         if not self._pending or self.overflow is not None:
             return None
-        times, states, inputs = (np.concatenate(column) for column in zip(*self._pending, strict=True))
+        times, states, inputs, steps = (np.concatenate(column) for column in zip(*self._pending, strict=True))
         self._pending.clear()
-        block = trajectory_of(self.dynamics, times, states, inputs, {}).finite()
+        block = trajectory_of(self.dynamics, times, states, inputs, steps, {}).finite()
         if block.time.size < times.size:
             self.overflow = float(times[block.time.size])
         self._blocks.append(block)

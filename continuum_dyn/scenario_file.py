@@ -33,7 +33,8 @@ class TableFile(BaseModel):
     ] = 1
 
 
-UNKNOWN_PROFILE = "unknown profile"
+UNKNOWN_PROFILE = "profile"
+"""The tag of a profile of no known name; messages have it in the place that they name."""
 
 
 def _drive_kind(value: Any) -> str:

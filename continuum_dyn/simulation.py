@@ -221,7 +221,12 @@ def _one_by_one(
     if any(point.stable is None for point in points):
         message = why_not_judged(scenario.scene) or ""
         if why_not_judged(scenario.scene) is None:
-            points, growths = _judged(Dynamics(scenario.scene), points)
+            try:
+                with allowed():  # kernels may have to be compiled
+                    points, growths = _judged(Dynamics(scenario.scene), points)
+            except KeyboardInterrupt:
+                told = f"interrupted after {len(points)} of {len(inputs)} points, of unknown stability"
+                return Run(scenario, Outcome.INTERRUPTED, told, points, solve_time=solve_time)
     outcome = Outcome.COMPLETED
     before: Equilibrium | None = None
     for point, growth, asked in zip(points, growths, inputs, strict=False):
@@ -288,7 +293,7 @@ def _motion(
         return _interrupted_early(scenario)
     stretches = spans(scenario.profiles, study.duration)
     started = time.perf_counter()
-    start = statics.solve(scenario.initial_inputs)
+    (start,) = ramp(statics, [scenario.initial_inputs])
     if not start.found:
         limit = _limit(statics, start, scenario.initial_inputs, None)
         solve_time = time.perf_counter() - started
@@ -396,9 +401,9 @@ def _moved(
     y: np.ndarray,
     monitor: Monitor,
     sink: Sink | None,
-    done: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+    done: tuple[np.ndarray, ...] | None = None,
 ) -> Trajectory:
-    """The motion from state ``y`` with the run's solver, after the times, states and inputs already done."""
+    """The motion from state ``y`` with the run's solver, after the samples already done."""
     assert isinstance(so_far.scenario.study, MotionStudy)
     assert so_far.solver is not None
     study, gathered = so_far.scenario.study, Samples(dynamics, None if sink is None else sink.add)
@@ -418,7 +423,7 @@ def _moved_on(
     study, times = so_far.scenario.study, begun.columns["time"]
     states, inputs = begun.states(dynamics, stretches)
     asked = np.isin(times, np.linspace(0.0, study.duration, study.samples))
-    done = times[asked], states[asked], inputs[asked]
+    done = times[asked], states[asked], inputs[asked], begun.columns["step_size"][asked]
     rest = spans_from(stretches, float(times[-1]))
     if not rest:
         gathered = Samples(dynamics)

@@ -17,6 +17,7 @@ class Trajectory:
     ``tension`` and ``cable_displacement``, both at the base, (samples, cables), ``load_factor`` (samples,
     driven loads) or None, the base's pose (samples,) or None in an arm without ``base``, coordinates,
     curvature and length (samples, segments), poses (samples, disks).
+    ``step_size`` is that of the integrator's step that a sample lies in, zero where no step led to it.
     ``elongation`` and its rate are None in a scene without extension. ``ledger`` holds energies (J), powers
     (W), and the integrals ``input_work`` and ``dissipated_energy`` (J) by glossary name. ``counters`` are the
     solver's: steps, evaluations, Jacobians, decompositions.
@@ -37,6 +38,7 @@ class Trajectory:
     disk_y: np.ndarray
     disk_theta: np.ndarray
     tip_speed: np.ndarray
+    step_size: np.ndarray
     ledger: dict[str, np.ndarray]
     counters: dict[str, int] = field(default_factory=dict)
     base_x: np.ndarray | None = None
@@ -111,9 +113,17 @@ def joined(blocks: Sequence[Trajectory], counters: dict[str, int]) -> Trajectory
 
 
 def trajectory_of(
-    dynamics: Dynamics, times: np.ndarray, states: np.ndarray, inputs: np.ndarray, counters: dict[str, int]
+    dynamics: Dynamics,
+    times: np.ndarray,
+    states: np.ndarray,
+    inputs: np.ndarray,
+    step_size: np.ndarray,
+    counters: dict[str, int],
 ) -> Trajectory:
-    """The trajectory of states (samples, size) at those times under inputs (samples, inputs)."""
+    """The trajectory of states (samples, size) at those times under inputs (samples, inputs).
+
+    ``step_size`` (s), shape (samples,), is zero where no step led to a sample.
+    """
     arm = dynamics.scene.arm
     seen = dynamics.observe(states, inputs)
     q, u = seen.coordinates, seen.rates
@@ -133,6 +143,7 @@ def trajectory_of(
         disk_y=seen.disk_y,
         disk_theta=seen.disk_theta,
         tip_speed=seen.tip_speed,
+        step_size=step_size,
         ledger=seen.ledger | {"input_work": input_work, "dissipated_energy": states[:, -1]},
         counters=counters,
     )

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         LIMIT,
         NOT_FOUND,
         STABLE,
+        TOWARDS_LIMIT,
         UNSTABLE,
         advance,
         measure,
@@ -130,23 +131,25 @@ def shorten(
     change: np.ndarray,
     factor: float,
     promised: tuple[float, float, float],
+    clearance: float,
     inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     chain: np.ndarray,
     trial: np.ndarray,
 ) -> tuple[float, tuple[float, float, float]]:
-    """Halve the step until the potential falls enough (Armijo) and no geometric limit is crossed.
+    """Halve the step until the potential falls enough (Armijo) and no geometric limit comes too close.
 
-    ``promised`` is the potential to fall from, its slope and its curvature along ``change``. Returns the
-    factor, 0 if there is none, and what ``pose_sweep`` says of ``trial``, the accepted q.
+    ``promised`` is the potential to fall from, its slope and its curvature along ``change``; of the
+    ``clearance`` at q a part must be left. Returns the factor, 0 if there is none, and what ``pose_sweep``
+    says of ``trial``, the accepted q.
     """
     potential, slope, curvature = promised
     for _ in range(60):
         advance(q, factor, change, trial)
         seen = pose_sweep(trial, inputs, segments, disks, chain)
         fall = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
-        if seen[2] > 0.0 and seen[0] <= potential + fall:
+        if seen[2] > TOWARDS_LIMIT * clearance and seen[0] <= potential + fall:
             return factor, seen
         factor *= 0.5
     return 0.0, (potential, 0.0, 0.0)
@@ -168,7 +171,7 @@ def lengthen(
     while 2.0 * factor <= largest:
         advance(q, 2.0 * factor, change, trial)
         further = pose_sweep(trial, inputs, segments, disks, chain)
-        if further[2] <= 0.0 or further[0] >= seen[0]:
+        if further[2] <= TOWARDS_LIMIT * seen[2] or further[0] >= seen[0]:
             break
         factor, seen = 2.0 * factor, further
     advance(q, factor, change, trial)
@@ -186,7 +189,7 @@ def leave_saddle(
     residual, descent = np.empty_like(q), np.empty_like(q)
     change, trial = np.empty_like(q), np.empty_like(q)
     pivots = np.empty((q.shape[0], PIVOT_COLUMNS))
-    potential = pose_sweep(q, inputs, segments, disks, chain)[0]
+    potential, _, clearance = pose_sweep(q, inputs, segments, disks, chain)
     residual_sweep(disks, chain, residual)
     descend(segments, disks, chain, residual, descent, pivots)
     curvature = saddle_direction(unit, chain, pivots, descent, change)
@@ -195,7 +198,7 @@ def leave_saddle(
         advance(change, -2.0, change, change)
         slope = -slope
     promised = (potential, slope, curvature)
-    factor, seen = shorten(q, change, 1.0, promised, inputs, segments, disks, chain, trial)
+    factor, seen = shorten(q, change, 1.0, promised, clearance, inputs, segments, disks, chain, trial)
     if factor == 0.0:
         return False
     lengthen(q, change, factor, 10.0 * LARGEST_TURN, seen, inputs, segments, disks, chain, trial)
@@ -239,6 +242,7 @@ def find_equilibrium(
             change,
             min(1.0, LARGEST_TURN / max(turn, 1e-30)),
             (fall_from, slope, 0.0),
+            clearance,
             inputs,
             segments,
             disks,

@@ -144,6 +144,7 @@ price                | -     | 1      | number of a way to compute a motion
 method               | -     | 1      | name of an integrator
 rtol                 | -     | 1      | relative tolerance of an integrator
 step                 | h     | s      | step of an integrator whose steps are equal
+step_size            | -     | s      | step of the integrator that a sample lies in, zero where it has none
 tip_error            | -     | m      | largest distance of the tip from where it exactly is, over the samples
 angle_error          | -     | rad    | angle of the tip against what it exactly is
 solve_time           | -     | s      | time that the solving takes

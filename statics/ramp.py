@@ -45,10 +45,25 @@ def ramp(
         point = solver.solve(inputs, start, before)
         if point.found and can_be_followed and isinstance(before, Equilibrium):
             point = _continued(solver, before, point)
+        elif point.outcome is Outcome.GEOMETRY_LIMIT:
+            point = _come_to_step_by_step(solver, inputs, before) or point
         found.append(point)
         if point.found:
             start, before = point.coordinates, point
     return found
+
+
+def _come_to_step_by_step(
+    solver: StaticSolver, inputs: np.ndarray, before: Equilibrium | Slip
+) -> Equilibrium | None:
+    """The stable equilibrium that the way to inputs ends in, if it does: a search from afar may miss it.
+
+    Close to the limit the search's long steps run into it.
+    """
+    path = _way(solver, inputs, before if isinstance(before, Equilibrium) else None)
+    if path is None or path.outcome is not Outcome.COMPLETED or not path.end.stable:
+        return None
+    return path.end
 
 
 def limit_on_the_way(
@@ -58,6 +73,11 @@ def limit_on_the_way(
 
     The way leads from ``start``, or from slack cables and no loads that change.
     """
+    path = _way(solver, inputs, start)
+    return path.end if path is not None and path.outcome is Outcome.GEOMETRY_LIMIT else None
+
+
+def _way(solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None) -> Path | None:
     if hindrances(solver.scene):
         return None
     if start is None:
@@ -65,8 +85,7 @@ def limit_on_the_way(
         start = solver.solve(np.concatenate([np.zeros(drives), inputs[drives:]]))
     if not start.found:
         return None
-    path = ArcLength(solver, np.array([start.inputs, inputs])).follow(start)
-    return path.end if path.outcome is Outcome.GEOMETRY_LIMIT else None
+    return ArcLength(solver, np.array([start.inputs, inputs])).follow(start)
 
 
 def _continued(solver: StaticSolver, before: Equilibrium, point: Equilibrium) -> Equilibrium:

@@ -1,7 +1,7 @@
 """Rone and Ben-Tzvi 2012 as printed: the whole arm, dense, in the printed coordinates (k, L).
 
 Kept to reproduce the paper and for nothing else: the axial force of Eq. 21 does not balance and is not
-conservative (docs/rone2012.md). Equations 6 to 25 stand here in the paper's letters, Eq. 22-25 in
+conservative (docs/theory/rone2012.md). Equations 6 to 25 stand here in the paper's letters, Eq. 22-25 in
 ``statics.effects.cables.disk_loads``; the poses of all disks have shape (n, 3), the generalized coordinates
 (k_1, L_1, ... k_n, L_n) shape (2 n,). Nothing here knows the segment, the chain or the kernels.
 """

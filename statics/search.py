@@ -21,6 +21,8 @@ FALLING = 0.9
 """A residual or a step that no longer falls below this part of the last one has come to rounding."""
 AT_LIMIT = 1e-6
 """Clearance (over L0) at which an arm that still descends has reached its geometric limit."""
+TOWARDS_LIMIT = 0.1
+"""Least part of the clearance that a step must leave: else a step that is too long looks like a limit."""
 LARGEST_TURN = 1.0
 """Most that one step may turn any disk, rad."""
 

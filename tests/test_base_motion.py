@@ -35,7 +35,9 @@ from continuum_dyn.profiles import (
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.smooth_motion import Rate, check_smooth
 from continuum_dyn.study import EquilibriumStudy, MotionStudy, Solver, StepResponseStudy
-from continuum_dyn.views import rerun_view
+from continuum_dyn.views.playback.arm import moving_parts
+from continuum_dyn.views.playback.measures import measures_of
+from continuum_dyn.views.playback.story import story_of
 from statics import Arm, Base, Bending, Gravity, InputError, Outcome, Scene, codegen
 from statics.effects import Effect
 
@@ -238,12 +240,12 @@ def test_log_and_recording_have_the_base_where_it_was(shaken: Scenario, tmp_path
     np.testing.assert_allclose(
         log.equilibria["disk_y"][:, -1] - y, log.equilibria["disk_y"][0, -1], atol=1e-9
     )
-    story = rerun_view._story(log)
+    story = story_of(log)
     assert story is not None
-    lines = rerun_view._moving_lines(log, story, np.arange(101))
-    np.testing.assert_allclose(lines["arm/base"].strips[:, 0].mean(axis=1)[:, 1], y, atol=1e-12)
-    np.testing.assert_allclose(lines["arm/backbone"].strips[:, 0, 0, 1], y, atol=1e-12)
-    tip = lines["arm/backbone"].strips[:, 0, -1]
+    drawn: Any = moving_parts(story, np.arange(101), measures_of([story]))
+    np.testing.assert_allclose(drawn["arm/base"].strips.mean(axis=1)[:, 1], y, atol=1e-12)
+    np.testing.assert_allclose(drawn["arm/rim"].strips[:, 0, 1], y, atol=1e-12)
+    tip = drawn["arm/rim"].strips[:, -1]
     np.testing.assert_allclose(tip[:, 1], log.trajectory["disk_y"][:, -1], atol=1e-12)
 
 

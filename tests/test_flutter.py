@@ -1,10 +1,12 @@
 """Stability where no energy tells: Beck's column, and the verdict on a scenario."""
 
 from pathlib import Path
+from signal import SIGINT, raise_signal
 
 import numpy as np
 import pytest
 from conftest import JET, at_rest, cantilever, edited
+from interrupting import at_call
 from typer.testing import CliRunner
 
 from continuum_dyn import simulate
@@ -117,6 +119,16 @@ def test_equilibrium_that_flutters_is_unstable_and_says_how(tmp_path: Path) -> N
     assert run.equilibria[0].unstable_directions == 1
     assert not run.equilibria[0].stable
     assert run.message.startswith("flutter at 42.7 Hz that grows at 18.6 1/s")
+
+
+def test_interrupted_while_stability_is_judged_it_keeps_the_equilibrium(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its kernels may have to be compiled first, which takes long."""
+    at_call("continuum_dyn.simulation:_judged", 1, lambda: raise_signal(SIGINT), monkeypatch.setattr)
+    run = simulate(edited(JET, tmp_path, ALONG, EQUILIBRIUM, CONSTANT))
+    assert (run.outcome, len(run.equilibria)) == (Outcome.INTERRUPTED, 1)
+    assert run.message == "interrupted after 1 of 1 points, of unknown stability"
 
 
 def test_without_inertia_stability_is_not_judged_and_is_told_so(tmp_path: Path) -> None:

@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import rone2012
+from conftest import UPPER, rone2012
+from random_scenes import interpreted
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.profiles import Constant
 from continuum_dyn.study import EquilibriumStudy, RampStudy
-from statics import Outcome, StaticSolver
-from statics.ramp import limit_on_the_way
+from statics import Arm, Bending, Cables, Extension, Outcome, Scene, StaticSolver
+from statics.effects import Effect
+from statics.ramp import limit_on_the_way, ramp
 
 LIMITS = [(4, 86.8), (8, 70.4), (16, 67.0)]
 """Tension (N) at which all holes meet, computed apart from this program; it tends to EJ / r^2 = 65.99 N."""
@@ -36,6 +38,39 @@ def test_every_tension_below_the_limit_has_an_equilibrium_and_none_above(disks: 
         rest = solver.solve(np.array([tension]))
         assert rest.outcome is (Outcome.COMPLETED if tension < limit.tension[0] else Outcome.GEOMETRY_LIMIT)
         assert rest.found == (tension < limit.tension[0])
+
+
+def closed_form(disks: int, extends: bool) -> float:
+    """Tension (N) at which holes meet without other loads: EJ phi / L0 = tau sigma_0(h) r where phi r = L.
+
+    The core's length is L = L0 (1 - tau sigma_0(h) / EA) then; two segments from disk to disk bend alike.
+    """
+    stiffness, area, r = 2.10e11, Arm.preset("rone2012").per_disk("area")[0], 0.008
+    shortened, tension = 1.0, 0.0
+    for _ in range(20):
+        h = shortened * 0.08 / disks / (2 * r)
+        chord = np.sin(h) / h
+        tension = shortened * stiffness * 2.011e-14 / (r**2 * chord)
+        if extends:
+            shortened = 1.0 - tension * chord / (stiffness * area)
+    return tension
+
+
+@pytest.mark.parametrize("extends", [True, False])
+@pytest.mark.parametrize("subsegments", [1, 2])
+def test_limit_is_that_of_the_closed_form(subsegments: int, extends: bool) -> None:
+    loads: tuple[Effect, ...] = (Bending(), Cables(), *([Extension()] if extends else []))
+    for disks in (2, 4, 5, 8, 16):
+        arm = Arm.preset(
+            "rone2012", disks=disks, disk_spacing=0.08 / disks, subsegments=subsegments, cables=(UPPER,)
+        )
+        solver = StaticSolver(Scene(arm, loads), interpreted)
+        limit = limit_on_the_way(solver, np.array([5000.0]), None)
+        assert limit is not None
+        assert limit.tension[0] == pytest.approx(closed_form(disks, extends), rel=1e-4)
+        for part in (0.5, 0.9, 0.99, 0.999):
+            assert ramp(solver, [part * limit.tension])[0].stable  # from straight
+        assert solver.solve(1.001 * limit.tension).outcome is Outcome.GEOMETRY_LIMIT
 
 
 @pytest.mark.parametrize("path", ["stable", "arc_length"])

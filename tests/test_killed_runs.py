@@ -120,7 +120,7 @@ def long_motion(folder: Path) -> Path:
         "samples = 1001", "samples = 10001"
     )
     path = folder / "long.toml"
-    path.write_text(text.replace("duration = 1.0", "duration = 100.0"))
+    path.write_text(text.replace("duration = 1.0", "duration = 1000.0"))
     return path
 
 
@@ -138,7 +138,7 @@ def test_killed_run_is_resumed_to_the_answer_of_an_unbroken_one(number: int, tmp
     while not part.exists():
         assert process.poll() is None
         time.sleep(0.01)
-    time.sleep(Random(number).uniform(0.0, 0.5))
+    time.sleep(Random(number).uniform(0.0, 1.5))
     process.kill()
     process.communicate()
     assert not (tmp_path / "long.h5").exists()

@@ -21,7 +21,7 @@ from statics.quantities import QUANTITIES
 TRAJECTORY = {
     *("time", "bend_angle", "bend_angle_rate", "elongation", "elongation_rate", "curvature"),
     *("length", "disk_x", "disk_y", "disk_theta", "tension", "cable_displacement", "kinetic_energy"),
-    *("elastic_energy", "gravity_energy", "input_power", "dissipated_power", "input_work"),
+    *("step_size", "elastic_energy", "gravity_energy", "input_power", "dissipated_power", "input_work"),
     *("dissipated_energy", "segment", "disk"),
 }
 

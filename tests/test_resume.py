@@ -161,7 +161,7 @@ def test_columns_of_a_log_give_back_the_states_that_they_show(name: str) -> None
     stretches = spans(scenario.profiles, scenario.study.duration)
     times = np.linspace(0.0, scenario.study.duration, 4)
     states = np.random.default_rng(0).normal(0.0, 1e-3, (4, dynamics.state_size))
-    shown = trajectory_of(dynamics, times, states, inputs_of(stretches, times), {})
+    shown = trajectory_of(dynamics, times, states, inputs_of(stretches, times), np.zeros(4), {})
     begun = Begun(Solver(), {}, columns_of(shown))
     found, _ = begun.states(dynamics, stretches)
     np.testing.assert_allclose(found, states, rtol=1e-12, atol=1e-15)

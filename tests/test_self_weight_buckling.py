@@ -40,19 +40,24 @@ def found(disks: int) -> float:
 
 
 def of_discrete_arm(disks: int) -> float:
-    """Lowest eigenvalue of its linear stability, K phi = load G phi.
+    """Lowest eigenvalue of its linear stability, K phi = load G phi."""
+    drop = lowered(np.arange(disks, 0, -1) / disks) / disks
+    return 1.0 / float(eigh(drop, disks * np.eye(disks), eigvals_only=True)[-1])
+
+
+def lowered(carried: np.ndarray) -> np.ndarray:
+    """Second derivatives by bend angles of what weights lose in height, over L0; segments carry so much (N).
 
     An arc whose angle goes linearly from a to b is lower by L0 (a^2 + a b + b^2) / 6 than a straight one, and
     lowers all weights from its end on.
     """
-    below = np.tril(np.ones((disks, disks)))  # theta of each end, from bend angles
-    near, far = below - np.eye(disks), below
-    carried = np.arange(disks, 0, -1) / disks
-    drop = sum(
-        weight / disks * (np.outer(a, a) + (np.outer(a, b) + np.outer(b, a)) / 2 + np.outer(b, b)) / 3
+    below = np.tril(np.ones((carried.size, carried.size)))  # theta of each end, from bend angles
+    near, far = below - np.eye(carried.size), below
+    parts = (
+        weight * (np.outer(a, a) + (np.outer(a, b) + np.outer(b, a)) / 2 + np.outer(b, b)) / 3
         for a, b, weight in zip(near, far, carried, strict=True)
     )
-    return 1.0 / float(eigh(drop, disks * np.eye(disks), eigvals_only=True)[-1])
+    return np.sum(list(parts), axis=0)
 
 
 @pytest.mark.parametrize("disks", [1, 4, 16])
@@ -90,6 +95,11 @@ def test_ramp_goes_on_without_a_jump_where_a_path_branches_off_and_logs_both(tmp
     number, bent = next((number, point) for number, point in numbered if point.lost_at is not None)
     assert bent.lost_at is not None
     assert bent.lost_at.critical is Critical.BRANCHING
+    own, tip = lowered(0.02 * 9.81 * np.arange(16, 0, -1)), lowered(np.ones(16))
+    stiffness = 2.10e11 * 2.011e-14 / 0.005**2 * np.eye(16)
+    critical = 1.0 / float(eigh(tip, stiffness - own, eigvals_only=True)[-1])
+    assert bent.lost_at.load_factor == pytest.approx(critical, rel=1e-6)
+    assert 1.0 / float(eigh(own, stiffness, eigvals_only=True)[-1]) == pytest.approx(1.5, abs=0.01)
     assert not any(point.jumped for point in run.equilibria)
     assert (
         "goes on along another path between points at load factor 0.4 and at load factor 0.6" in run.message

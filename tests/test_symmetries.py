@@ -15,6 +15,7 @@ from random_scenes import (
     at_rest,
     dynamics_of,
     holds_in,
+    let_out,
     powers,
     quantity_of,
     within,
@@ -82,7 +83,7 @@ def mirror(name: str) -> float | np.ndarray:
 @holds_in(*KINDS)
 def test_mirrored_arm_rests_in_the_mirror(case: Case) -> None:
     """To the last bit: no operation prefers a side."""
-    assert_multiplied(at_rest(changed(case, mirror)), at_rest(case), mirror)
+    assert_multiplied(let_out(changed(case, mirror)), let_out(case), mirror)
 
 
 @holds_in(*KINDS)
@@ -122,7 +123,7 @@ def test_other_units_change_no_bit_of_an_equilibrium(
 ) -> None:
     """Powers of two: then nothing is rounded differently, and any number without its unit shows."""
     factor = units(length, mass, time)
-    assert_multiplied(at_rest(changed(case, factor)), at_rest(case), factor)
+    assert_multiplied(let_out(changed(case, factor)), let_out(case), factor)
 
 
 @holds_in(*KINDS, length=POWER_OF_TWO, mass=POWER_OF_TWO, time=POWER_OF_TWO)

@@ -1,16 +1,44 @@
-"""``continuum-dyn play``: look at a log in rerun."""
+"""``continuum-dyn play``: look at logs in rerun."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from statics.errors import InputError
+
 
 def play(
-    log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log written by run.", show_default=False)],
+    logs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE.h5...",
+            help="Logs written by run; several share one view.",
+            show_default=False,
+        ),
+    ],
+    web: Annotated[
+        bool, typer.Option("--web", help="Show it to a browser on this computer, until Ctrl-C.")
+    ] = False,
+    save: Annotated[
+        Path | None,
+        typer.Option("--save", metavar="FILE.rrd", help="Write the recording instead.", show_default=False),
+    ] = None,
 ) -> None:
-    """Open a log in the rerun viewer."""
-    from continuum_dyn.record import read_log
-    from continuum_dyn.views import rerun_view
+    """Play logs back in rerun: in its window, in a browser, or into a file for later.
 
-    rerun_view.show(read_log(log))
+    Several logs run side by side along the same time, each in a colour of its own.
+    """
+    if web and save is not None:
+        raise InputError("--web shows the recording and --save keeps it in a file. Give one of them.")
+    from continuum_dyn.record import read_log
+    from continuum_dyn.views.playback import recording, viewer
+
+    told = [read_log(path) for path in logs]
+    if save is not None:
+        recording.save(told, save)
+        typer.echo(f"wrote {save}")
+    elif web:
+        viewer.serve(told, lambda address: typer.echo(f"{address}\nUntil Ctrl-C."))
+    else:
+        viewer.show(told)

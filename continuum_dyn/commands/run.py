@@ -57,6 +57,7 @@ def run(
     overrides: Overrides = None,
     out: Folder = Path("logs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
+    live: Annotated[bool, typer.Option("--live", help="Show each in rerun while it runs.")] = False,
 ) -> None:
     """Simulate scenarios and log them.
 
@@ -69,6 +70,10 @@ def run(
     make_folder(out)
     statuses = []
     for job in jobs:
+        if live:
+            from continuum_dyn.views.playback.live import start
+
+            start(job.log)
         statuses.append(answer(job, as_json))
         if statuses[-1] > 1:
             break
@@ -136,11 +141,11 @@ def _recording(log: "Log") -> tuple[Path | None, str]:
     """The recording that is written beside a log; or none, and why."""
     try:
         with extras_named():
-            from continuum_dyn.views import rerun_view
+            from continuum_dyn.views.playback.recording import save
     except MissingExtraError as missing:
         return None, str(missing)
     recording = log.path.with_suffix(".rrd")
-    rerun_view.save(log, recording)
+    save([log], recording)
     return recording, ""
 
 

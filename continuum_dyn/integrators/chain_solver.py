@@ -32,9 +32,9 @@ class ChainSolver(OdeSolver):
     Options: ``dynamics`` and ``spans``, whose right-hand side this is (``fun`` is not called), one after the
     other without a jump of accelerations; ``tolerance``, the largest displacement (m) of any disk by the
     error of one step; ``first_step`` (s), at most; ``tableau``. ``internal_steps`` and
-    ``internal_rejections`` count those of the last call, which takes no more than ``steps_left``. Where nodes
-    carry no mass the start's accelerations are not known; a first step by ``SDIRK4``, which does not ask for
-    them, ends in some that fit.
+    ``internal_rejections`` count those of the last call, which takes no more than ``steps_left``, and
+    ``internal_times`` (s) are where they begin and end. Where nodes carry no mass the start's accelerations
+    are not known; a first step by ``SDIRK4``, which does not ask for them, ends in some that fit.
     """
 
     steps_left = BATCH
@@ -99,6 +99,7 @@ class ChainSolver(OdeSolver):
             reason = "step size fell below rounding" if ended == TOO_SMALL else "no step was possible"
             return False, f"{reason} ({self.next_step:.3g} s)"
         self.knows_acceleration = True
+        self.internal_times = self.records[0][: taken + 1]
         self.t, self.y = float(self.records[0][taken]), self.records[1][taken].copy()
         return True, None
 

@@ -101,10 +101,11 @@ class Guard(OdeSolver):
     """Mixin before a solver class: the same steps, watched. Takes ``monitor`` as a solver option.
 
     A solver whose step is many may count them in ``internal_steps`` and ``internal_rejections``; it should
-    take no more than ``steps_left``.
+    take no more than ``steps_left``. If they differ in size, ``internal_times`` are where they begin and end.
     """
 
     internal_steps = 1
+    internal_times: np.ndarray | None = None
     internal_rejections = 0
     steps_left = 1
 

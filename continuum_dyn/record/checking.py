@@ -50,6 +50,7 @@ def departures(file: h5py.File) -> Iterator[str]:
     yield from _wrong_tables(file)
     for name, known in GROUPS.items():
         yield from _wrong_group(file, name, known)
+    yield from _wrong_arm(file)
     yield from _too_large(file)
 
 
@@ -165,6 +166,15 @@ def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Ite
     yield from _wrong_shapes(group, datasets, known)
 
 
+def _wrong_arm(file: h5py.File) -> Iterator[str]:
+    arm = linked(file, "arm", h5py.Group)[0]
+    if arm is None:
+        return
+    spacing = {} if "disk_spacing" in arm else {"disk_spacing": float}
+    for wrong in _wrong_attributes(arm, {"disks": int, "subsegments": int, **spacing}, {}):
+        yield f"/arm: {wrong}"
+
+
 def _wrong_type(dataset: h5py.Dataset, column: Column) -> str:
     if kind_of(dataset) is column.kind:
         return ""
@@ -222,29 +232,50 @@ def oddities(file: h5py.File) -> Iterator[str]:
     """What a log can be read in spite of: units, meanings and scales that are not as the format has them."""
     for name, known in GROUPS.items():
         group = linked(file, name, h5py.Group)[0]
-        for dataset in group or ():
+        if group is None:
+            continue
+        for dataset in group:
             if dataset not in known:
                 yield f"/{name}/{dataset}: not a name of the format"
                 continue
             found = linked(group, dataset, h5py.Dataset)[0]
             if found is not None:
-                yield from _odd(found, dataset, known[dataset])
+                yield from _odd_words(found, dataset)
+        yield from _odd_scales(group, known)
     for name in file:
         if name not in GROUPS and name != "tables":
             yield f"/{name}: not a name of the format"
 
 
-def _odd(found: h5py.Dataset, name: str, column: Column) -> Iterator[str]:
+def _odd_words(found: h5py.Dataset, name: str) -> Iterator[str]:
     quantity = QUANTITIES[name]
     for key, expected in (("units", quantity.unit), ("long_name", quantity.meaning)):
         read = attribute(found, key)
         if read != expected:
             yield f"{found.name}: {key} {expected!r} is expected; read {str(read)[:60]!r}"
-    if column.dimensions == (name,):
-        if not found.is_scale:
-            yield f"{found.name}: not made a dimension scale"
+
+
+def _odd_scales(group: h5py.Group, known: Mapping[str, Column]) -> Iterator[str]:
+    """Dimensions without their scale, by what the scales say of it themselves."""
+    attached: dict[str, set[tuple[str, int]]] = {}
+    for name, column in known.items():
+        if column.dimensions == (name,) and name in group:
+            if attribute(group[name], "CLASS") != "DIMENSION_SCALE":
+                yield f"{group.name}/{name}: not made a dimension scale"
+            attached[name] = set(_attached(group[name]))
+    for name, column in known.items():
+        for axis, scale in enumerate(column.dimensions):
+            if name in group and name != scale and (name, axis) not in attached.get(scale, ()):
+                yield f"{group.name}/{name}: {scale} is not attached to its axis {axis} as a scale"
+
+
+def _attached(scale: h5py.Dataset) -> Iterator[tuple[str, int]]:
+    """Names of the datasets that a scale is attached to, and which of their axes."""
+    if "REFERENCE_LIST" not in scale.attrs:
         return
-    for axis, expected in enumerate(column.dimensions):
-        scales = [scale.name.rpartition("/")[2] for scale in found.dims[axis].values()]
-        if scales != [expected]:
-            yield f"{found.name}: the scale of its axis {axis} is to be {expected}; read {scales or 'none'}"
+    places = scale.attrs["REFERENCE_LIST"]
+    if getattr(places.dtype, "names", None) != ("dataset", "dimension"):
+        return
+    for reference, axis in places:
+        if isinstance(reference, h5py.Reference) and reference:
+            yield (scale.file[reference].name or "").rpartition("/")[2], int(axis)

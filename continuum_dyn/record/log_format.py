@@ -1,6 +1,6 @@
 """The format of logs, as data: what is in which group, over which dimensions, of which type.
 
-``docs/log_format.md`` says it in words. Units and meanings are the glossary's.
+``docs/reference/log_format.md`` says it in words. Units and meanings are the glossary's.
 """
 
 from dataclasses import dataclass, fields
@@ -65,7 +65,9 @@ GROUPS: dict[str, dict[str, Column]] = {
         **_shapes("time"),
         **_columns("bend_angle_rate", "time", "segment"),
         **_columns("elongation_rate", "time", "segment", required=False),
-        **_columns("kinetic_energy input_power dissipated_power input_work dissipated_energy", "time"),
+        **_columns(
+            "step_size kinetic_energy input_power dissipated_power input_work dissipated_energy", "time"
+        ),
     },
     "equilibria": {
         **_scales(point=Kind.INTEGER),

@@ -9,8 +9,10 @@ import numpy as np
 
 from continuum_dyn.record.checking import attribute, departures, kind_of, oddities
 from continuum_dyn.record.datasets import reason
+from continuum_dyn.record.heaps import spoiled_heaps
 from continuum_dyn.record.log import Log
 from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES, Kind
+from continuum_dyn.record.unclosed import is_unclosed, open_unclosed
 from statics.errors import LogError
 from statics.outcome import Outcome
 
@@ -36,23 +38,23 @@ def read_log(path: Path) -> Log:
     return log
 
 
-def validate(path: Path) -> list[str]:
-    """Everything in which a file departs from the format. Raises ``LogError`` for one that is no HDF5."""
+def departures_of(path: Path) -> list[str]:
+    """Everything in which a file departs from the format, in words. Raises ``LogError`` like ``opened``."""
     with opened(path) as file:
         found = list(departures(file))
         if found:
             return found
-        return [
-            *oddities(file),
-            *(f"{name}: numbers that are not finite" for name in _not_finite(_read(file, path))),
-        ]
+        spoiled = [f"{name}: numbers that are not finite" for name in _not_finite(_read(file, path))]
+        return [*oddities(file), *spoiled]
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
     """The HDF5 file, to read, also while it is written. Raises ``LogError`` for whatever HDF5 cannot read."""
     try:
-        with _file(path) as file:
+        if spoiled_heaps(path):
+            raise LogError(f"{path}: the texts in it are spoiled.")
+        with open_unclosed(path) if is_unclosed(path) else h5py.File(path, "r", locking=False) as file:
             yield file
     except LogError:
         raise
@@ -63,16 +65,6 @@ def opened(path: Path) -> Iterator[h5py.File]:
     except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError) as error:
         told = reason(error) if isinstance(error, OSError) else str(error).splitlines()[0][:200]
         raise LogError(f"{path}: not a log of continuum-dyn that can be read: {told}.") from error
-
-
-def _file(path: Path) -> h5py.File:
-    """One that was never closed opens for readers beside its writer alone."""
-    try:
-        return h5py.File(path, "r", locking=False)
-    except FileNotFoundError:
-        raise
-    except OSError:
-        return h5py.File(path, "r", swmr=True, locking=False)
 
 
 def _read(file: h5py.File, path: Path) -> Log:

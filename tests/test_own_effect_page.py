@@ -1,20 +1,15 @@
-"""The walk-through of CONTRIBUTING.md, performed on a copy of the program."""
+"""The walk-through of docs/how_to/own_effect.md, performed on a copy of the program."""
 
 import json
-import os
 import re
-import shutil
-import subprocess
-import sys
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
+import walk_through
+from walk_through import COMMAND_LINE, PACKAGES, Block, perform
 
-REPOSITORY = Path(__file__).parents[1]
-PAGE = (REPOSITORY / "CONTRIBUTING.md").read_text(encoding="utf-8")
-PACKAGES = "statics", "continuum_dyn"
+PAGE = walk_through.page("own_effect.md")
 
 SWINGING = """
 [arm]
@@ -46,42 +41,16 @@ print(set(ElasticFoundation(6.0e3).columns(Arm(4, 0.02))), set(ElasticFoundation
 """
 
 
-class Block(NamedTuple):
-    """A block of the page: a whole file, or a ``diff`` of lines to add to one."""
-
-    path: str
-    kind: str
-    text: str
-
-
 def blocks() -> list[Block]:
     """In the page's order; a block's file is the one named where its step begins, in bold."""
     steps = re.findall(r"^\*\*\d\. .*?`(\S+?)`.*?^```(\w+)\n(.*?)^```$", PAGE, flags=re.DOTALL | re.MULTILINE)
     return [Block(*step) for step in steps]
 
 
-def perform(block: Block, root: Path) -> None:
-    """Write the block's file, or add its lines below the one line that it shows of the file."""
-    file = root / block.path
-    if block.kind != "diff":
-        assert not file.exists(), f"{block.path} is to be new"
-        file.parent.mkdir(exist_ok=True)
-        file.write_text(block.text, encoding="utf-8")
-        return
-    lines = block.text.splitlines(keepends=True)
-    before = "".join(line[1:] for line in lines if line[0] == " ")
-    after = "".join(line[1:] for line in lines if line[0] in " +")
-    text = file.read_text(encoding="utf-8")
-    assert text.count(before) == 1, f"{block.path} does not have, once: {before}"
-    file.write_text(text.replace(before, after), encoding="utf-8")
-
-
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the program in which the walk-through has been performed."""
-    root = tmp_path_factory.mktemp("program")
-    for package in PACKAGES:
-        shutil.copytree(REPOSITORY / package, root / package, ignore=shutil.ignore_patterns("__pycache__"))
+    root = walk_through.copy_of_program(tmp_path_factory.mktemp("program"))
     for block in blocks():
         perform(block, root)
     return root
@@ -89,32 +58,16 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def run(program: Path, *arguments: str) -> str:
     """What Python prints in the copy, its kernels interpreted and kept apart."""
-    own = {
-        "PYTHONPATH": str(program),
-        "CONTINUUM_DYN_CACHE": str(program / "kernels"),
-        "NUMBA_DISABLE_JIT": "1",
-    }
-    done = subprocess.run(
-        [sys.executable, *arguments],
-        cwd=program,
-        env=os.environ | own,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    kernels = str(program / "kernels")
+    return walk_through.run(program, *arguments, CONTINUUM_DYN_CACHE=kernels, NUMBA_DISABLE_JIT="1")
 
 
 def command_line(program: Path, *arguments: str) -> str:
-    return run(program, "-c", "from continuum_dyn.cli import main; main()", *arguments)
+    return run(program, *COMMAND_LINE, *arguments)
 
 
 def said(pattern: str) -> str:
-    """What the page says where the pattern's group stands; wherever its lines break."""
-    found = re.search(pattern, " ".join(PAGE.split()))
-    assert found, f"the page does not say: {pattern}"
-    return found.group(1)
+    return walk_through.said(PAGE, pattern)
 
 
 def test_effect_takes_one_file_one_registry_line_and_its_glossary_entries() -> None:
@@ -137,7 +90,7 @@ def test_scenario_of_the_walk_through_rests_where_the_page_says(program: Path) -
 def test_deflection_without_the_tissue_is_what_the_page_says() -> None:
     """F L^3 / 3EJ, the limit of no foundation, which only the numbers of Table 1 enter."""
     open_air = 1e3 * 0.01 * 0.08**3 / (3 * 2.10e11 * 2.011e-14)
-    assert f"{open_air:.4f}" == said(r"F L\^3 / 3EJ = (\S+) mm")
+    assert f"{open_air:.4f}" == said(r"\$FL\^3/3EJ\$ = (\S+) mm")
 
 
 def test_checks_of_the_walk_through_pass(program: Path) -> None:

@@ -1,8 +1,5 @@
-"""The rerun view shows what the log holds, or says why it cannot."""
+"""A recording for rerun shows what the log holds, or says why it cannot."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,16 +8,20 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import SCENARIOS
-from matplotlib.image import imread
+from playback_entities import entities_of
 from rerun.chunk import RrdReader
+from typer.testing import CliRunner
 
 from continuum_dyn import load_scenario, simulate
+from continuum_dyn.cli import app
 from continuum_dyn.record import Log, read_log, write_log
-from continuum_dyn.views import rerun_view
+from continuum_dyn.views.playback import story as playback_story
+from continuum_dyn.views.playback.arm import POINTS_PER_SEGMENT
+from continuum_dyn.views.playback.recording import save
 from statics import Outcome
 from statics.errors import LogError
 
-VULKAN_DRIVERS = Path("/usr/share/vulkan/icd.d")
+LEDGER = ("kinetic_energy", "elastic_energy", "gravity_energy", "input_work", "dissipated_energy")
 
 
 def assert_close(actual: Any, expected: Any, within: float = 1e-8) -> None:
@@ -47,13 +48,8 @@ def ramp(tmp_path_factory: pytest.TempPathFactory) -> Log:
 def shown(log: Log, folder: Path) -> dict[str, dict[str, list[Any]]]:
     """Entities of the recording of a log, by path: their columns by name, those that never change too."""
     path = folder / "shown.rrd"
-    rerun_view.save(log, path)
-    entities: dict[str, dict[str, list[Any]]] = {}
-    for chunk in RrdReader(path).stream():
-        columns = entities.setdefault(str(chunk.entity_path), {})
-        for name, values in chunk.to_record_batch().to_pydict().items():
-            columns.setdefault(name, []).extend(values)
-    return entities
+    save([log], path)
+    return entities_of(path)
 
 
 def points(entity: Mapping[str, list[Any]]) -> np.ndarray:
@@ -73,9 +69,7 @@ def test_series_of_a_motion_are_those_of_the_log(motion: Log, tmp_path: Path) ->
     entities, columns = shown(motion, tmp_path), motion.trajectory
     for name, expected in {
         "tension": columns["tension"],
-        "tip_x": columns["disk_x"][:, -1:],
-        "tip_y": columns["disk_y"][:, -1:],
-        "energy": np.column_stack([columns[f"{kind}_energy"] for kind in ("kinetic", "elastic", "gravity")]),
+        "energy": np.column_stack([columns[name] - columns[name][0] for name in LEDGER]),
         "power": np.column_stack([columns["input_power"], columns["dissipated_power"]]),
         "curvature": columns["curvature"],
     }.items():
@@ -83,11 +77,11 @@ def test_series_of_a_motion_are_those_of_the_log(motion: Log, tmp_path: Path) ->
     assert_close(seconds(entities["/series/tension"]), columns["time"], within=0.5e-9)
 
 
-def test_series_carry_names_with_units(motion: Log, tmp_path: Path) -> None:
+def test_series_carry_names(motion: Log, tmp_path: Path) -> None:
     entities = shown(motion, tmp_path)
     assert entities["/series/tension"]["SeriesLines:names"] == [["upper"]]
-    assert entities["/series/power"]["SeriesLines:names"] == [["input power (W)", "dissipated power (W)"]]
-    assert "kinetic energy (J)" in entities["/series/energy"]["SeriesLines:names"][0]
+    assert entities["/series/power"]["SeriesLines:names"] == [["input power", "dissipated power"]]
+    assert "kinetic energy" in entities["/series/energy"]["SeriesLines:names"][0]
 
 
 def test_the_arm_is_drawn_where_the_log_has_it(motion: Log, tmp_path: Path) -> None:
@@ -96,8 +90,8 @@ def test_the_arm_is_drawn_where_the_log_has_it(motion: Log, tmp_path: Path) -> N
     assert rows[0] == 0
     assert rows[-1] == len(columns["time"]) - 1
     centres = np.stack([columns["disk_x"], columns["disk_y"]], axis=-1)[rows]
-    backbone = points(entities["/arm/backbone"])[:, 0]
-    ends_of_arcs = backbone[:, rerun_view.POINTS_PER_SEGMENT :: rerun_view.POINTS_PER_SEGMENT]
+    backbone = points(entities["/arm/rim"])[:, 0]
+    ends_of_arcs = backbone[:, POINTS_PER_SEGMENT::POINTS_PER_SEGMENT]
     np.testing.assert_array_equal(backbone[:, 0], 0.0)
     assert_close(ends_of_arcs, centres)
     assert_close(points(entities["/arm/disks"]).mean(axis=2), centres)
@@ -106,7 +100,7 @@ def test_the_arm_is_drawn_where_the_log_has_it(motion: Log, tmp_path: Path) -> N
 
 
 def test_arcs_are_as_long_as_their_segments(ramp: Log, tmp_path: Path) -> None:
-    backbone = points(shown(ramp, tmp_path)["/arm/backbone"])[:, 0]
+    backbone = points(shown(ramp, tmp_path)["/arm/rim"])[:, 0]
     drawn = np.linalg.norm(np.diff(backbone, axis=1), axis=2).sum(axis=1)
     assert_close(drawn, ramp.equilibria["length"].sum(axis=1), within=1e-6)
 
@@ -124,12 +118,12 @@ def test_cables_run_through_their_holes_to_their_anchor(motion: Log, tmp_path: P
 
 def test_a_settled_arm_lies_on_its_equilibrium(motion: Log, tmp_path: Path) -> None:
     entities = shown(motion, tmp_path)
-    equilibrium, backbone = points(entities["/arm/equilibrium"]), points(entities["/arm/backbone"])
-    assert_close(backbone[-1], equilibrium[0], within=1e-6)
+    equilibrium, backbone = points(entities["/arm/equilibrium"]), points(entities["/arm/rim"])
+    assert_close(backbone[-1], equilibrium[-1], within=1e-6)
 
 
 def test_an_equilibrium_that_is_not_of_the_end_is_not_drawn(motion: Log, tmp_path: Path) -> None:
-    only_first = {name: values[:1] for name, values in motion.equilibria.items()}
+    only_first = {name: values[:1] for name, values in motion.equilibria.items()}  # of 0 N
     assert "/arm/equilibrium" not in shown(replace(motion, equilibria=only_first), tmp_path)
 
 
@@ -138,7 +132,7 @@ def test_a_ramp_is_a_sequence_of_points(ramp: Log, tmp_path: Path) -> None:
     assert entities["/arm/backbone"]["point"] == ramp.equilibria["point"].tolist()
     tension = np.array(entities["/series/tension"]["Scalars:scalars"])
     np.testing.assert_array_equal(tension, ramp.equilibria["tension"])
-    assert_close(points(entities["/arm/backbone"])[:, 0, -1, 1], ramp.equilibria["disk_y"][:, -1])
+    assert_close(points(entities["/arm/rim"])[:, 0, -1, 1], ramp.equilibria["disk_y"][:, -1])
     assert "/series/power" not in entities
     assert "/arm/equilibrium" not in entities
 
@@ -155,7 +149,7 @@ def test_a_straight_arm_is_drawn_straight(ramp: Log, tmp_path: Path) -> None:
     straight = {name: np.zeros_like(values) for name, values in ramp.equilibria.items()}
     straight |= {"length": ramp.equilibria["length"], "disk_x": ramp.equilibria["length"].cumsum(axis=1)}
     straight["point"] = ramp.equilibria["point"]
-    backbone = points(shown(replace(ramp, equilibria=straight), tmp_path)["/arm/backbone"])
+    backbone = points(shown(replace(ramp, equilibria=straight), tmp_path)["/arm/rim"])
     np.testing.assert_array_equal(backbone[..., 1], 0.0)
     assert_close(backbone[:, 0, -1, 0], ramp.equilibria["length"].sum(axis=1))
 
@@ -163,7 +157,7 @@ def test_a_straight_arm_is_drawn_straight(ramp: Log, tmp_path: Path) -> None:
 def test_long_arms_and_long_motions_are_thinned_out(
     motion: Log, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rerun_view, "MOST_POSES", 20_000)
+    monkeypatch.setattr(playback_story, "MOST_POSES", 20_000)
     samples, disks = 500, 200
     many = {name: np.zeros((samples, disks)) for name in ("disk_x", "disk_y", "disk_theta", "curvature")}
     many |= {"length": np.full((samples, disks), 4e-4), "tension": np.zeros((samples, 1))}
@@ -172,7 +166,7 @@ def test_long_arms_and_long_motions_are_thinned_out(
         motion, trajectory={"time": np.linspace(0.0, 50.0, samples), **many}, arm=arm, equilibria={}
     )
     entities = shown(long, tmp_path)
-    assert np.shape(entities["/arm/backbone"]["LineStrips2D:strips"]) == (100, 1, 601, 2)
+    assert np.shape(entities["/arm/rim"]["LineStrips2D:strips"]) == (100, 1, 201, 2)
     assert np.shape(entities["/arm/disks"]["LineStrips2D:strips"]) == (100, 100, 2, 2)
     names = entities["/series/curvature"]["SeriesLines:names"][0]
     assert (len(names), names[0], names[-1]) == (8, "segment 1", "segment 200")
@@ -185,7 +179,7 @@ def test_a_log_without_a_pose_says_how_the_run_ended(ramp: Log, tmp_path: Path) 
 
 
 def test_the_layout_is_in_the_file(ramp: Log, tmp_path: Path) -> None:
-    rerun_view.save(ramp, tmp_path / "ramp.rrd")
+    save([ramp], tmp_path / "ramp.rrd")
     assert len(RrdReader(tmp_path / "ramp.rrd").blueprints()) == 1
 
 
@@ -195,52 +189,15 @@ def test_nothing_is_left_where_it_cannot_be_written(motion: Log, tmp_path: Path,
     (tmp_path / "folder").mkdir()
     before = sorted(tmp_path.rglob("*"))
     with pytest.raises(LogError, match="cannot write the recording"):
-        rerun_view.save(motion, tmp_path / place)
+        save([motion], tmp_path / place)
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_the_viewer_is_given_the_recording(
-    ramp: Log, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    copy = tmp_path / "copy.rrd"
-    program = f"import shutil, sys; shutil.copy(sys.argv[1], {str(copy)!r})"
-    monkeypatch.setattr(rerun_view, "VIEWER", (sys.executable, "-c", program))
-    rerun_view.show(ramp)
-    assert RrdReader(copy).recordings()
-
-
-@pytest.mark.parametrize(
-    ("command", "reason"),
-    [
-        ((sys.executable, "-c", "import sys; sys.exit('no display')"), "no display"),
-        (("/no/viewer",), "start"),
-    ],
-)
-def test_a_viewer_that_cannot_run_is_an_error(
-    ramp: Log, monkeypatch: pytest.MonkeyPatch, command: tuple[str, ...], reason: str
-) -> None:
-    monkeypatch.setattr(rerun_view, "VIEWER", command)
-    with pytest.raises(LogError, match=reason):
-        rerun_view.show(ramp)
-
-
-def test_the_viewer_of_this_environment_answers() -> None:
-    answer = subprocess.run([*rerun_view.VIEWER, "--version"], capture_output=True, text=True, check=True)
-    assert "0.41" in answer.stdout
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(
-    not list(VULKAN_DRIVERS.glob("lvp*.json")), reason="needs the Debian package mesa-vulkan-drivers"
-)
-def test_rerun_draws_the_recording(motion: Log, tmp_path: Path) -> None:
-    recording, picture = tmp_path / "motion.rrd", tmp_path / "motion.png"
-    rerun_view.save(motion, recording)
-    options = ("--headless", "--window-size", "1200x800", "--screenshot-to", picture)
-    # A settings folder of its own: it counts as a first session, of which rerun reports nothing home.
-    settings = {name: str(tmp_path) for name in ("XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME")}
-    command = [*rerun_view.VIEWER, *options, recording]
-    subprocess.run(command, check=True, capture_output=True, timeout=120, env=os.environ | settings)
-    pixels = imread(picture)
-    assert np.ptp(pixels[..., :3]) > 0.9
-    assert (pixels[..., :3] == 1.0).all(axis=-1).mean() > 0.3  # the arm's white background
+def test_play_keeps_the_recording_in_a_file(motion: Log, tmp_path: Path) -> None:
+    kept = tmp_path / "kept.rrd"
+    result = CliRunner().invoke(app, ["play", str(motion.path), "--save", str(kept)])
+    assert result.exit_code == 0
+    assert points(entities_of(kept)["/arm/rim"]).shape == points(shown(motion, tmp_path)["/arm/rim"]).shape
+    refused = CliRunner().invoke(app, ["play", str(motion.path), "--web", "--save", str(kept)])
+    assert refused.exit_code == 2
+    assert "Give one of them" in refused.output

@@ -1,0 +1,36 @@
+"""``continuum-dyn validate``: hold logs against their format."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+MAX_SHOWN = 20
+"""Most departures of a file that are printed."""
+
+
+def validate(
+    logs: Annotated[
+        list[Path], typer.Argument(metavar="LOG", help="Logs, as run writes them.", show_default=False)
+    ],
+) -> None:
+    """Check logs against the documented format: names, shapes, types, units, scales, finite numbers.
+
+    Exit status: 0 all as they should be, 1 something is not, 2 a file cannot be read at all.
+    """
+    from continuum_dyn.record import FORMAT_VERSION
+    from continuum_dyn.record.reading import departures_of
+
+    wrong = False
+    for log in logs:
+        found = departures_of(log)
+        if not found:
+            typer.echo(f"{log}: a log of format {FORMAT_VERSION}")
+            continue
+        wrong = True
+        typer.echo(f"{log}: {len(found)} {'departure' if len(found) == 1 else 'departures'} from the format")
+        for line in found[:MAX_SHOWN]:
+            typer.echo(f"  {line}")
+        if len(found) > MAX_SHOWN:
+            typer.echo(f"  and {len(found) - MAX_SHOWN} more")
+    raise typer.Exit(int(wrong))

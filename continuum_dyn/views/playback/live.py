@@ -1,0 +1,136 @@
+"""A log shown while it is written, by a process of its own: it reads what is on disk, and never asks the run.
+
+``python -m continuum_dyn.views.playback.live LOG.h5 SINCE`` follows the log that is written since then (s, as
+of ``time.time``), in rerun's window, until it is complete or the process that started this one has ended.
+"""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+import rerun as rr
+
+from continuum_dyn.record import Log, read_log
+from continuum_dyn.record.log_format import UNFINISHED
+from continuum_dyn.views.playback.blueprint import blueprint
+from continuum_dyn.views.playback.drawing import Drawn
+from continuum_dyn.views.playback.measures import measures_of
+from continuum_dyn.views.playback.plots import plots_of
+from continuum_dyn.views.playback.recording import APPLICATION, send_beside, send_rows, send_story
+from continuum_dyn.views.playback.story import MOST_FRAMES, Story, story_of
+from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, free_ports
+from statics.errors import LogError
+
+INTERVAL = 0.5
+"""Shortest time between two looks at the log, s."""
+FLUSH_TIME = 20.0
+"""What is sent may take so long to arrive, s."""
+SHARE = 0.03
+"""Part of the time that reading and sending may take."""
+
+
+class Follower:
+    """Sends to a recording what a log has more than the last time, and all of it anew once it is complete."""
+
+    def __init__(self, recording: rr.RecordingStream) -> None:
+        rr.set_strict_mode(True)
+        self.recording = recording
+        self.rows = 0
+        self.complete = False
+
+    def show(self, log: Log) -> None:
+        """A complete log is the last one: colours and ranges are then those of the whole."""
+        story = story_of(log)
+        self.complete = log.complete
+        if story is not None and log.complete:
+            send_story(self.recording, story)
+        elif story is not None and len(story.times) > self.rows:
+            self._add(story)
+
+    def _add(self, story: Story) -> None:
+        new = np.arange(self.rows, len(story.times))
+        measures = measures_of([story])
+        frames = new[new % _stride(story) == 0]
+        drawn: dict[str, Drawn] = {}
+        if frames.size:
+            drawn = send_rows(self.recording, story, measures, frames, new)
+        drawn |= send_beside(self.recording, [story], measures, drawn)
+        if self.rows == 0:
+            plots = {name: [plot] for name, plot in plots_of(story).items()}
+            self.recording.send_blueprint(blueprint([story], drawn, plots, growing=True))
+        self.rows = len(story.times)
+
+
+def _stride(story: Story) -> int:
+    """Samples from one frame to the next, so that the whole motion has no more frames than are played."""
+    samples = getattr(story.scenario.study, "samples", 1) if story.scenario is not None else 1
+    return -(-samples // MOST_FRAMES)
+
+
+def follow(path: Path, since: float, follower: Follower, goes_on: Callable[[], bool]) -> None:
+    """Show the log at ``path`` as it grows until it is complete, or once more when nothing ``goes_on``."""
+    while not follower.complete:
+        last = not goes_on()
+        started = time.perf_counter()
+        log = _latest(path, since)
+        if log is not None:
+            follower.show(log)
+        if last:
+            return
+        _pause((time.perf_counter() - started) / SHARE, lambda: goes_on() and not _is_new(path, since))
+
+
+def _pause(seconds: float, may_last: Callable[[], bool]) -> None:
+    """Wait so long, but no longer than it may last."""
+    until = time.monotonic() + seconds
+    time.sleep(INTERVAL)
+    while time.monotonic() < until and may_last():
+        time.sleep(INTERVAL)
+
+
+def _is_new(path: Path, since: float) -> bool:
+    try:
+        return path.stat().st_mtime >= since
+    except OSError:
+        return False
+
+
+def _latest(path: Path, since: float) -> Log | None:
+    """The log that is written since then, finished or not; None if there is none that can be read yet."""
+    for candidate in (path, path.with_name(path.name + UNFINISHED)):
+        with suppress(LogError):  # just being made or moved: the next look finds it
+            if _is_new(candidate, since):
+                return read_log(candidate)
+    return None
+
+
+def start(path: Path) -> subprocess.Popen[bytes]:
+    """Follow the log that is about to be written at ``path``, in a process that outlives this one."""
+    command = [sys.executable, "-m", __name__, str(path), repr(time.time())]
+    return subprocess.Popen(command, start_new_session=True)
+
+
+def main() -> None:
+    """Open the viewer, and follow."""
+    path, since = Path(sys.argv[1]), float(sys.argv[2])
+    parent, (port,) = os.getppid(), free_ports(1)
+    viewer = subprocess.Popen(
+        [*VIEWER, "--port", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    recording = rr.RecordingStream(APPLICATION)
+    recording.connect_grpc(f"rerun+http://{LOOPBACK}:{port}/proxy")
+    recording.send_recording_name(path.stem)
+    follow(path, since, Follower(recording), lambda: os.getppid() == parent and viewer.poll() is None)
+    if viewer.poll() is None:
+        recording.flush(timeout_sec=FLUSH_TIME)
+    elif viewer.returncode:
+        sys.exit("the rerun viewer cannot run here; the run goes on without it.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,144 @@
+"""What is plotted over time: series by name, with the unit that their axis has."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import rerun as rr
+
+from continuum_dyn.study import StepResponseStudy
+from continuum_dyn.views.playback.colors import GREY, PALETTE, shades, told_apart
+from continuum_dyn.views.playback.drawing import when
+from continuum_dyn.views.playback.story import Story, spread
+from continuum_dyn.views.playback.targets import resting_rows
+from statics.quantities import QUANTITIES
+
+MOST_SERIES = 8
+STORED = ("kinetic_energy", "elastic_energy", "gravity_energy")
+LEDGER = ("input_work", "dissipated_energy")
+POWERS = ("input_power", "dissipated_power")
+LINE_WIDTH, THIN = 1.5, 0.8
+
+
+@dataclass(frozen=True)
+class Series:
+    """Values at the rows of a story, shape (rows,); one that is not a number leaves a gap.
+
+    ``is_bound`` is drawn thin and grey.
+    """
+
+    name: str
+    values: np.ndarray
+    is_bound: bool = False
+
+
+@dataclass(frozen=True)
+class Plot:
+    """Series that share their axis; the title has its unit."""
+
+    title: str
+    series: Sequence[Series]
+
+
+def plots_of(story: Story) -> dict[str, Plot]:
+    """What is plotted, by the last part of its entity; what the log does not know is left out."""
+    columns = story.columns
+    tension = [Series(*each) for each in zip(story.log.cables, columns["tension"].T, strict=True)]
+    plots = {
+        "tension": Plot(QUANTITIES["tension"].label, tension),
+        "load_factor": Plot(QUANTITIES["load_factor"].label, _load_factors(columns)),
+        "tip_x": Plot("tip x (m)", _tip(story, "disk_x")),
+        "tip_y": Plot("tip y (m)", _tip(story, "disk_y")),
+        "energy": Plot("energy since the start (J)", _since_start(story)),
+        "power": Plot(
+            "power (W)", [Series(_words(name), columns[name]) for name in POWERS if name in columns]
+        ),
+        "step_size": Plot("step of the solver, log10 of s", _steps(columns)),
+        "curvature": Plot(QUANTITIES["curvature"].label, _curvature(columns)),
+    }
+    return {name: plot for name, plot in plots.items() if plot.series}
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _load_factors(columns: Mapping[str, np.ndarray]) -> list[Series]:
+    factors = columns.get("load_factor", np.empty((0, 0))).T
+    return [Series(f"load {number}", values) for number, values in enumerate(factors, start=1)]
+
+
+def _curvature(columns: Mapping[str, np.ndarray]) -> list[Series]:
+    curvature = columns["curvature"].T
+    return [Series(f"segment {n + 1}", curvature[n]) for n in spread(len(curvature), MOST_SERIES)]
+
+
+def _since_start(story: Story) -> list[Series]:
+    """Changes, so that the ledger can be read: input work is what is stored and dissipated.
+
+    Beside other runs, what is stored is shown as a whole.
+    """
+    columns = {name: story.columns[name] for name in (*STORED, *LEDGER) if name in story.columns}
+    stored = [columns[name] for name in STORED if name in columns]
+    if story.name and stored:
+        ledger = {name: columns[name] for name in LEDGER if name in columns}
+        columns = {"stored_energy": np.sum(stored, axis=0), **ledger}
+    return [Series(_words(name), values - values[0]) for name, values in columns.items()]
+
+
+def _steps(columns: Mapping[str, np.ndarray]) -> list[Series]:
+    if not columns.get("step_size", np.zeros(1)).any():
+        return []
+    taken = np.where(columns["step_size"] > 0.0, columns["step_size"], np.nan)
+    return [Series("step", np.log10(taken))]
+
+
+def _tip(story: Story, name: str) -> list[Series]:
+    """The tip, where it would rest under the moment's inputs and, of a run alone, the settled's band."""
+    series = [Series("tip", story.columns[name][:, -1])]
+    resting = resting_rows(story.log) if story.moves else np.array([-1])
+    if not (resting >= 0).any():
+        return series
+    target = np.where(resting >= 0, story.log.equilibria[name][resting, -1], np.nan)
+    series.append(Series("static target", target))
+    if not story.name and story.scenario is not None and isinstance(story.scenario.study, StepResponseStudy):
+        within = story.scenario.settled_within
+        series += [Series("settled band", target + way, is_bound=True) for way in (-within, within)]
+    return series
+
+
+def value_range(plots: Sequence[Plot]) -> tuple[float, float]:
+    """All values with a margin of a tenth; for a constant, from zero to twice of it."""
+    values = np.concatenate([series.values for plot in plots for series in plot.series])
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    margin = 0.1 * (high - low) or abs(high) or 1.0
+    return low - margin, high + margin
+
+
+def send_style(recording: rr.RecordingStream, entity: str, story: Story, plot: Plot) -> None:
+    """Names, colours and widths of the series."""
+    count = len(plot.series)
+    bounds = np.array([series.is_bound for series in plot.series])
+    colors = shades(int(PALETTE[story.rank]), count) if story.name else told_apart(count)
+    prefix = f"{story.name}: " if story.name else ""
+    style = {
+        "names": [prefix + series.name for series in plot.series],
+        "colors": np.where(bounds, np.uint32(GREY), colors),
+    }
+    lines = rr.SeriesLines(
+        **style,
+        widths=np.where(bounds, THIN, LINE_WIDTH),
+        aggregation_policy="MinMax",  # the mean of fast oscillations would look like rest
+    )
+    recording.log(entity, lines, static=True)
+    if not story.moves:
+        recording.log(entity, rr.SeriesPoints(**style, marker_sizes=[3.0] * count), static=True)
+
+
+def send_values(
+    recording: rr.RecordingStream, entity: str, story: Story, plot: Plot, rows: np.ndarray
+) -> None:
+    """The series at those rows."""
+    values = np.column_stack([series.values[rows] for series in plot.series])
+    columns = rr.Scalars.columns(scalars=values.ravel()).partition(np.full(len(rows), len(plot.series)))
+    recording.send_columns(entity, [when(story, rows)], columns)

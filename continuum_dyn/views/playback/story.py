@@ -1,0 +1,95 @@
+"""What a playback tells: the columns of a log along a time line, and which rows of them are shown."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from continuum_dyn.logged_scenario import logged_scenario
+from continuum_dyn.record import Log
+from continuum_dyn.study import Scenario
+from statics.errors import LogError
+
+FRAMES_PER_SECOND = 60
+SHORTEST_PLAYBACK = 10.0
+"""Shorter motions play in slow motion, to take this long (s)."""
+
+MOST_FRAMES = 2000
+MOST_POSES = 500_000
+"""Most frames times segments; arms of many segments are drawn in fewer frames."""
+
+MOST_SAMPLES = 20_000
+
+
+@dataclass(frozen=True)
+class Story:
+    """A log as it is told: ``columns`` by glossary name, one row for each of ``times`` on the time line.
+
+    A motion runs along ``sim_time``, times in s; equilibria along ``point``, times their numbers.
+    ``scenario`` is None where the log carries none. ``name`` tells runs apart that are shown together, and is
+    empty for one alone; ``rank`` counts them from 0.
+    """
+
+    log: Log
+    timeline: str
+    times: np.ndarray
+    columns: Mapping[str, np.ndarray]
+    scenario: Scenario | None
+    name: str = ""
+    rank: int = 0
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is a motion."""
+        return self.timeline == "sim_time"
+
+    @property
+    def duration(self) -> float:
+        """Length of a motion in s; 0 for equilibria."""
+        return float(np.ptp(self.times)) if self.moves else 0.0
+
+    @property
+    def frames(self) -> np.ndarray:
+        """Rows in which the arm is drawn."""
+        rows, segments = self.columns["curvature"].shape
+        played = int(FRAMES_PER_SECOND * max(self.duration, SHORTEST_PLAYBACK))
+        return spread(rows, max(1, min(played, MOST_FRAMES, MOST_POSES // segments)))
+
+    @property
+    def samples(self) -> np.ndarray:
+        """Rows that are plotted."""
+        return spread(len(self.times), MOST_SAMPLES)
+
+    def at(self, *path: str) -> str:
+        """The entity of that path; where runs are shown together, with the run's name after its root."""
+        return "/".join(part for part in (path[0], self.name, *path[1:]) if part)
+
+
+def spread(count: int, most: int) -> np.ndarray:
+    """At most ``most`` of the numbers below ``count``, spread evenly, both ends among them."""
+    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
+
+
+def story_of(log: Log, name: str = "", rank: int = 0) -> Story | None:
+    """The motion, or else the equilibria; None if the run ended before its first pose."""
+    try:
+        scenario = logged_scenario(log)
+    except LogError:
+        scenario = None
+    if log.trajectory and log.trajectory["time"].size:
+        return Story(log, "sim_time", log.trajectory["time"], log.trajectory, scenario, name, rank)
+    if log.equilibria:
+        return Story(log, "point", log.equilibria["point"], log.equilibria, scenario, name, rank)
+    return None
+
+
+def names_of(logs: Sequence[Log]) -> list[str]:
+    """A name for each log that is shown with others: its file's, with as much of its path as it takes."""
+    if len(logs) == 1:
+        return [""]
+    paths = [log.path.resolve().with_suffix("").parts for log in logs]
+    for length in range(1, max(map(len, paths)) + 1):
+        names = [" ".join(parts[-length:]) for parts in paths]
+        if len(set(names)) == len(names):
+            return names
+    return [f"{number} {parts[-1]}" for number, parts in enumerate(paths, start=1)]

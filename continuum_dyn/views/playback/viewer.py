@@ -1,0 +1,115 @@
+"""Rerun's viewer for recordings: in a window of its own, or in a browser on this computer."""
+
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import monotonic, sleep
+from urllib.parse import quote
+
+from continuum_dyn.record import Log
+from continuum_dyn.views.playback.recording import save
+from statics.errors import LogError
+
+LOOPBACK = "127.0.0.1"
+VIEWER = (
+    *(sys.executable, "-c", "import sys; from rerun_cli.__main__ import main; sys.exit(main())"),
+    *("--bind", LOOPBACK),
+)
+"""The viewer of this Python environment, for this computer only. ``-m rerun_cli`` loses its exit status."""
+
+START_TIME = 20.0
+"""A server that does not answer within this time (s) is given up."""
+
+
+def show(logs: Sequence[Log]) -> None:
+    """Open logs in rerun's viewer, and return when its window is closed.
+
+    Raises ``LogError`` if the viewer cannot run here.
+    """
+    with _saved(logs) as path:
+        # On the default port, a viewer that already runs would take the file over.
+        with _started(["--port", "auto", str(path)]) as viewer:
+            _, words = viewer.communicate()
+        if viewer.returncode:
+            raise LogError(f"the rerun viewer cannot run here: {_last_line(words, viewer.returncode)}")
+
+
+def serve(logs: Sequence[Log], tell: Callable[[str], None]) -> None:
+    """Show logs to browsers on this computer until Ctrl-C; ``tell`` is given the address to open.
+
+    Raises ``LogError`` if the server cannot run here.
+    """
+    data, page = free_ports(2)
+    with _saved(logs) as path:
+        ports = ["--port", str(data), "--web-viewer-port", str(page)]
+        with _started(["--serve-web", *ports, str(path)]) as server:
+            _wait_for(page, server)
+            tell(address(data, page))
+            try:
+                _, words = server.communicate()
+            except KeyboardInterrupt:
+                return
+        if server.returncode:
+            raise LogError(f"the rerun server ended: {_last_line(words, server.returncode)}")
+
+
+def address(data: int, page: int) -> str:
+    """Where a browser finds the viewer on port ``page`` with the recording served on port ``data``."""
+    source = quote(f"rerun+http://{LOOPBACK}:{data}/proxy", safe="")
+    return f"http://{LOOPBACK}:{page}/?url={source}&theme=light"
+
+
+def free_ports(count: int) -> list[int]:
+    """So many ports that nothing listens on."""
+    sockets = [socket.create_server((LOOPBACK, 0)) for _ in range(count)]
+    ports = [each.getsockname()[1] for each in sockets]
+    for each in sockets:
+        each.close()
+    return ports
+
+
+@contextmanager
+def _saved(logs: Sequence[Log]) -> Iterator[Path]:
+    """A recording of the logs for as long as it is looked at."""
+    with TemporaryDirectory(prefix="continuum-dyn-", ignore_cleanup_errors=True) as folder:
+        path = Path(folder) / f"{logs[0].path.stem}.rrd"
+        save(logs, path)
+        yield path
+
+
+@contextmanager
+def _started(arguments: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+    """The viewer's process, which ends with the block at the latest, and what it started with it."""
+    import psutil
+
+    try:
+        viewer = subprocess.Popen([*VIEWER, *arguments], stderr=subprocess.PIPE, text=True)
+    except OSError as error:
+        raise LogError(f"cannot start the rerun viewer: {error}.") from error
+    try:
+        yield viewer
+    finally:
+        with suppress(psutil.NoSuchProcess):
+            for process in (*psutil.Process(viewer.pid).children(recursive=True), viewer):
+                with suppress(psutil.NoSuchProcess):
+                    process.terminate()
+        viewer.wait()
+
+
+def _wait_for(port: int, server: subprocess.Popen[str]) -> None:
+    """Until something answers there. Raises ``LogError`` where nothing does."""
+    until = monotonic() + START_TIME
+    while server.poll() is None and monotonic() < until:
+        with suppress(OSError), socket.create_connection((LOOPBACK, port), timeout=1.0):
+            return
+        sleep(0.05)
+    if server.poll() is None:
+        raise LogError(f"the rerun server did not answer within {START_TIME:g} s.")
+
+
+def _last_line(words: str, status: int) -> str:
+    return (words.strip().splitlines() or [f"exit status {status}"])[-1]

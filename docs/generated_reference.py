@@ -1,0 +1,309 @@
+"""The parts of the reference that the program tells itself: commands, scenario keys, effects, glossary.
+
+Pages ask for a part by the directive ``{generated} PART``, so what they show is what the program has.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from itertools import groupby
+from typing import Any
+
+import typer
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+import continuum_dyn.dynamics
+import continuum_dyn.effects
+import continuum_dyn.modes
+import continuum_dyn.profiles
+import continuum_dyn.study
+import statics
+from continuum_dyn.cli import app
+from continuum_dyn.effects import EFFECTS
+from continuum_dyn.profiles import PROFILES
+from continuum_dyn.schema import json_schema
+from continuum_dyn.study import STUDIES
+from statics.effects import STATIC_EFFECTS
+from statics.outcome import Outcome
+from statics.quantities import QUANTITIES
+
+EVERY_COMMAND = "Options of every command"
+
+
+def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table in Markdown; bars within cells are kept from being its own."""
+    header = list(header)
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
+
+
+def code(text: Any) -> str:
+    """The text as code, or nothing."""
+    return f"`{text}`" if str(text) else ""
+
+
+def prose(docstring: str) -> str:
+    """A docstring as Markdown."""
+    return docstring.replace("``", "`")
+
+
+# Commands
+
+
+def commands() -> str:
+    """Every command: what it does, its arguments, its options."""
+    group: Any = typer.main.get_command(app)
+    parts = []
+    for panel, found in groupby(group.commands.items(), lambda named: named[1].rich_help_panel):
+        parts.append(f"## {panel}")
+        parts += [_command(name, command) for name, command in found]
+    of_every = [(_spelled(p), p.help) for p in group.params if p.rich_help_panel == EVERY_COMMAND]
+    of_none = [(_spelled(p), p.help) for p in group.params if p.rich_help_panel != EVERY_COMMAND]
+    parts += [f"## {EVERY_COMMAND}", "Before its name, or after it.", table(("option", "does"), of_every)]
+    parts += ["## Options without a command", table(("option", "does"), of_none)]
+    return "\n\n".join(parts)
+
+
+def _command(name: str, command: Any) -> str:
+    own = [p for p in command.params if p.rich_help_panel != EVERY_COMMAND]
+    arguments = [p for p in own if p.param_type_name == "argument"]
+    options = [p for p in own if p.param_type_name == "option"]
+    usage = " ".join(
+        [
+            f"continuum-dyn {name}",
+            *(p.metavar if p.required else f"[{p.metavar}]" for p in arguments),
+            *(["[OPTIONS]"] if options else []),
+        ]
+    )
+    rows = [(code(p.metavar), p.help, _default(p)) for p in arguments]
+    rows += [(_spelled(p), p.help, _default(p)) for p in options]
+    told = [f"### {name}", f"```text\n{usage}\n```", prose(command.help)]
+    return "\n\n".join([*told, table(("given", "is", "by default"), rows)] if rows else told)
+
+
+def _spelled(option: Any) -> str:
+    spelled = ", ".join(code(spelling) for spelling in option.opts)
+    return spelled if getattr(option, "is_flag", False) else f"{spelled} {code(option.metavar or '')}".strip()
+
+
+def _default(parameter: Any) -> str:
+    return "" if parameter.default in (None, False, ()) else code(parameter.default)
+
+
+def exit_statuses() -> str:
+    """Every outcome with the status that a run exits with."""
+    rows = [(code(outcome), str(outcome.exit_status)) for outcome in Outcome]
+    return table(("outcome", "exit status"), rows)
+
+
+# Scenario keys
+
+
+OF_EFFECTS = """\
+The effects in play: `gravity = {}` takes one with what it has by default. What is not named is in no
+equation. `cables`, `cable_friction` and `loads` are no keys here: they come with `[[cables]]`, their
+`friction`, and `[[loads]]`."""
+
+
+def scenario_keys() -> str:
+    """Every table of a scenario file: its keys, what they may be, what they mean."""
+    schema = json_schema()
+    definitions = schema["$defs"]
+    parts = ["## The file", _keys(schema, definitions)]
+    for name, key in schema["properties"].items():
+        reference = _reference(key)
+        if name == "effects":
+            parts += ["## `[effects]`", OF_EFFECTS, effects()]
+        elif name == "study":
+            parts += ["## `[study]`", *_studies(key, definitions)]
+        elif reference:
+            heading = f"[[{name}]]" if "items" in key else f"[{name}]"
+            of_table = definitions[reference]
+            told = prose(of_table["description"]).removeprefix(f"{heading}: ")
+            parts += [f"## `{heading}`", told[0].upper() + told[1:], _keys(of_table, definitions)]
+    return "\n\n".join([*parts, "## Profiles", *_profiles(definitions)])
+
+
+def _studies(study: dict[str, Any], definitions: dict[str, Any]) -> Iterator[str]:
+    for kind, reference in study["discriminator"]["mapping"].items():
+        found = definitions[reference.rpartition("/")[2]]
+        yield f'### `kind = "{kind}"`\n\n{prose(found["description"])}'
+        yield _keys(found, definitions)
+
+
+def _profiles(definitions: dict[str, Any]) -> Iterator[str]:
+    yield (
+        "What drives a motion: a tension, a cable's displacement, a load's factor, the base's `x`, `y` or "
+        "`angle`. A number alone is constant; in a ramp study a list has a value for each point."
+    )
+    for found in definitions.values():
+        kind = found.get("properties", {}).get("profile", {}).get("const")
+        if kind:
+            yield f'### `profile = "{kind}"`\n\n{prose(found["description"])}'
+            yield _keys(found, definitions)
+
+
+def _keys(of_table: dict[str, Any], definitions: dict[str, Any]) -> str:
+    """The keys of one table, but for the one that tells its kind."""
+    rows = [
+        (
+            code(name),
+            _values(key, definitions),
+            "required" if name in of_table.get("required", []) else _shown(key.get("default", "")),
+            prose(key.get("description", "")).replace("\n", " "),
+        )
+        for name, key in of_table.get("properties", {}).items()
+        if "const" not in key
+    ]
+    return table(("key", "value", "by default", "meaning"), rows) if rows else "It has no keys of its own."
+
+
+def _shown(default: Any) -> str:
+    if isinstance(default, bool):
+        return code(str(default).lower())
+    return code(f'"{default}"') if isinstance(default, str) and default else code(default)
+
+
+def _reference(key: dict[str, Any]) -> str:
+    return (key.get("$ref") or key.get("items", {}).get("$ref", "")).rpartition("/")[2]
+
+
+def _values(key: dict[str, Any], definitions: dict[str, Any]) -> str:
+    """What a key may be, in words."""
+    choices = key.get("oneOf") or key.get("anyOf")
+    if choices and any(_is_profile(choice, definitions) for choice in choices):
+        plain = [choice for choice in choices if not _is_profile(choice, definitions)]
+        return ", or ".join([*(_values(choice, definitions) for choice in plain), "[profile](#profiles)"])
+    if choices and "discriminator" in key:
+        return "table"
+    if choices:
+        return ", or ".join(_values(choice, definitions) for choice in choices)
+    if _reference(key):
+        found = definitions[_reference(key)]
+        if "enum" in found:
+            return ", ".join(code(f'"{word}"') for word in found["enum"])
+        return "list of tables" if "items" in key else "table"
+    if "enum" in key:
+        return ", ".join(code(f'"{word}"') for word in key["enum"])
+    return _number_or_text(key, definitions)
+
+
+def _is_profile(choice: dict[str, Any], definitions: dict[str, Any]) -> bool:
+    found = definitions.get(_reference(choice), {})
+    return "const" in found.get("properties", {}).get("profile", {})
+
+
+def _number_or_text(key: dict[str, Any], definitions: dict[str, Any]) -> str:
+    if "const" in key:
+        return code(f'"{key["const"]}"')
+    if key["type"] == "array" and "prefixItems" in key:
+        return f"list of {len(key['prefixItems'])} numbers"
+    if key["type"] == "array":
+        return "list of them"
+    if key["type"] == "object":
+        return f"table: for each name {_values(key['additionalProperties'], definitions)}"
+    words = {"number": "number", "integer": "integer", "string": "text", "boolean": "`true` or `false`"}
+    signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
+    bounds = [f"{sign} {key[name]:g}" for name, sign in signs.items() if name in key]
+    return " ".join([words[key["type"]], ", ".join(bounds)]).strip()
+
+
+def effects() -> str:
+    """Every effect: what it does, what it needs of the arm, where it is from; and the keys of its table."""
+    definitions = json_schema()["$defs"]
+    parts = []
+    for name, effect in EFFECTS.items():
+        needs = ", ".join(code(quantity) for quantity in effect.arm_quantities)
+        lines = [
+            f"On each {effect.place}, {'at rest and in motion' if effect.acts_at_rest else 'in motion'}."
+        ]
+        lines += [f"Needs the arm's {needs}."] if needs else []
+        lines += [f"Source: {effect.source}."]
+        parts += [f"### `{name}`", prose(_text(effect)), " ".join(lines)]
+        if effect.__name__ in definitions and definitions[effect.__name__].get("properties"):
+            parts.append(_keys(definitions[effect.__name__], definitions))
+    return "\n\n".join(parts)
+
+
+def _text(documented: Any) -> str:
+    """A docstring without its indentation; formulas and words that look like marks stay as they are."""
+    lines = (documented.__doc__ or "").split("\n")
+    return "\n".join([lines[0], *(line.strip() for line in lines[1:])]).strip().replace("*", "\\*")
+
+
+# Glossary
+
+
+def glossary() -> str:
+    """Every quantity: its name, letter, unit and meaning."""
+    rows = [
+        (code(q.name), "" if q.letter == q.name else code(q.letter), q.unit, q.meaning.replace("*", "\\*"))
+        for q in QUANTITIES.values()
+    ]
+    return table(("name", "letter", "unit", "meaning"), rows)
+
+
+# Python
+
+
+def python_names() -> str:
+    """The public names of both packages, and of the modules that people use beside them."""
+    parts = []
+    for module, names in PUBLIC.items():
+        parts += [f"## `{module.__name__}`", prose((module.__doc__ or "").strip())]
+        parts += [_documented(f"{module.__name__}.{name}", getattr(module, name)) for name in names]
+    return "\n\n".join(parts)
+
+
+def _documented(path: str, value: Any) -> str:
+    kind = "autoclass" if isinstance(value, type) else "autofunction" if callable(value) else "autodata"
+    return f"```{{eval-rst}}\n.. {kind}:: {path}\n```"
+
+
+PUBLIC: dict[Any, Iterable[str]] = {
+    continuum_dyn: continuum_dyn.__all__,
+    statics: statics.__all__,
+    continuum_dyn.effects: [
+        effect.__name__ for name, effect in EFFECTS.items() if name not in STATIC_EFFECTS
+    ],
+    continuum_dyn.profiles: [*(profile.__name__ for profile in PROFILES.values()), "Span", "spans"],
+    continuum_dyn.study: [*(study.__name__ for study in STUDIES.values()), "Solver", "Accuracy"],
+    continuum_dyn.dynamics: ["Dynamics", "Observation"],
+    continuum_dyn.modes: ["modes_at_rest", "RestModes", "Mode"],
+}
+
+
+PARTS: dict[str, Callable[[], str]] = {
+    part.__name__: part for part in (commands, exit_statuses, scenario_keys, glossary, python_names)
+}
+
+
+class Generated(SphinxDirective):
+    """``{generated} PART``: what the program tells, as part of the page."""
+
+    required_arguments = 1
+
+    def run(self) -> list[Any]:
+        """The part as nodes."""
+        return self.parse_text_to_nodes(PARTS[self.arguments[0]](), allow_section_headings=True)
+
+
+def bars_as_text(_app: Any, _what: str, _name: str, _value: Any, _options: Any, lines: list[str]) -> None:
+    """In docstrings |v| is a size, and no substitution of reStructuredText."""
+    for number, line in enumerate(lines):
+        parts = line.split("``")
+        parts[::2] = [part.replace("|", "\\|") for part in parts[::2]]
+        lines[number] = "``".join(parts)
+
+
+def without_factories(*given: Any) -> tuple[str, Any] | None:
+    """Signatures of dataclasses without how they make their defaults."""
+    signature, returns = given[-2:]
+    return signature and (signature.replace("=<factory>", "=..."), returns)
+
+
+def setup(application: Sphinx) -> dict[str, Any]:
+    """Tell Sphinx of the directive."""
+    application.connect("autodoc-process-docstring", bars_as_text)
+    application.connect("autodoc-process-signature", without_factories)
+    application.add_directive("generated", Generated)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,81 @@
+"""The pages of docs/ as a site: built without a warning, and the parts that the program tells are whole."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from continuum_dyn.cli import app
+from continuum_dyn.effects import EFFECTS
+from continuum_dyn.schema import json_schema
+from statics.outcome import Outcome
+from statics.quantities import QUANTITIES
+
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+@pytest.fixture(scope="module")
+def parts() -> dict[str, str]:
+    """What the program tells of itself, in Markdown, by part."""
+    sys.path.insert(0, str(DOCS))
+    try:
+        import generated_reference  # pyright: ignore[reportMissingImports]
+    finally:
+        sys.path.remove(str(DOCS))
+    return {name: part() for name, part in generated_reference.PARTS.items()}
+
+
+def headings(text: str) -> list[str]:
+    return re.findall(r"^#+ (.*)$", text, flags=re.MULTILINE)
+
+
+def test_every_part_is_on_a_page(parts: dict[str, str]) -> None:
+    pages = "".join(page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md"))
+    assert set(re.findall(r"^```\{generated\} (\w+)$", pages, flags=re.MULTILINE)) == set(parts)
+
+
+def test_reference_has_every_command_with_its_options(parts: dict[str, str]) -> None:
+    text = parts["commands"]
+    assert {command.callback.__name__ for command in app.registered_commands if command.callback} <= set(
+        headings(text)
+    )
+    for option in ("--set", "--assert", "--save", "--quiet", "--version"):
+        assert f"| `{option}`" in text
+
+
+def test_reference_has_every_key_of_every_table_with_its_meaning(parts: dict[str, str]) -> None:
+    schema = json_schema()
+    rows = dict(re.findall(r"^\| `(\w+)` \|.*\| (.*) \|$", parts["scenario_keys"], flags=re.MULTILINE))
+    for table in (schema, *schema["$defs"].values()):
+        for name, key in keys_of(table):
+            if name not in EFFECTS:
+                assert rows.get(name), f"{name} {key}"
+
+
+def keys_of(table: dict[str, Any]) -> list[tuple[str, Any]]:
+    return [(name, key) for name, key in table.get("properties", {}).items() if "const" not in key]
+
+
+def test_reference_has_every_effect_and_where_it_is_from(parts: dict[str, str]) -> None:
+    found = set(headings(parts["scenario_keys"]))
+    for name, effect in EFFECTS.items():
+        assert f"`{name}`" in found
+        assert effect.source in parts["scenario_keys"]
+
+
+def test_reference_has_every_outcome_and_quantity(parts: dict[str, str]) -> None:
+    assert all(f"| `{outcome}` | {outcome.exit_status} |" in parts["exit_statuses"] for outcome in Outcome)
+    assert all(f"| `{name}` |" in parts["glossary"] for name in QUANTITIES)
+
+
+@pytest.mark.slow
+def test_site_is_built_without_a_warning(tmp_path: Path) -> None:
+    options = ["-W", "--keep-going", "-q", "-d", str(tmp_path / "doctrees")]
+    command = [sys.executable, "-m", "sphinx", *options, str(DOCS), str(tmp_path / "site")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    page = (tmp_path / "site" / "reference" / "python.html").read_text(encoding="utf-8")
+    assert "The answer to a scenario." in page  # the docstring of Run
