@@ -146,7 +146,7 @@ def _markdown(verdicts: "Sequence[Verdict]") -> str:
 
 INTRODUCTION = """\
 Written by `continuum-dyn hard`, which runs the scenarios of a folder and holds
-each to its bounds ([theory](theory.md), "Hard cases"). Error: largest distance
+each to its bounds ([theory](../theory/hard_cases.md)). Error: largest distance
 of the tip from a much tighter run by the last of the methods that claim the
 case. Work: segment evaluations. Time: solving alone, with kernels loaded. Used:
 the largest part of what a bound allows."""
