@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from continuum_dyn.loops import Loop, on_both_ways, widest_gap, widest_loop, work_around
-from continuum_dyn.turnings import monotonic_ways
+from continuum_dyn.answers.loops import Loop, on_both_ways, widest_gap, widest_loop, work_around
+from continuum_dyn.answers.turnings import monotonic_ways
 
 TURN = np.linspace(0.0, 4.0 * np.pi, 4001)
 PULL, DRAW, LATE = 0.8, 3e-3, 0.3

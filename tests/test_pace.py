@@ -8,7 +8,7 @@ import pytest
 from conftest import SCENARIOS, edited
 
 from continuum_dyn import load_scenario
-from continuum_dyn.pace import at_pace
+from continuum_dyn.answers.pace import at_pace
 from continuum_dyn.profiles import inputs_of, spans
 from continuum_dyn.study import MotionStudy, Scenario
 from statics import InputError

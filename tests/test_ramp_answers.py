@@ -9,12 +9,12 @@ from conftest import SCENARIOS, edited
 from typer.testing import CliRunner
 
 from continuum_dyn import simulate
+from continuum_dyn.answers.lag import delay, gap, rate_within
+from continuum_dyn.answers.pace import at_pace
+from continuum_dyn.answers.ramp import FIGURES, RampAnswers, ramp_answers
+from continuum_dyn.answers.ramp_rates import measured
 from continuum_dyn.cli import app
-from continuum_dyn.lag import delay, gap, rate_within
 from continuum_dyn.logged_scenario import logged_scenario
-from continuum_dyn.pace import at_pace
-from continuum_dyn.ramp_answers import FIGURES, RampAnswers, ramp_answers
-from continuum_dyn.ramp_rates import measured
 from continuum_dyn.record import Log, read_log, write_log
 from continuum_dyn.views import ramp_plot
 from statics import InputError

@@ -8,8 +8,8 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from continuum_dyn.ring_down import fit_ring_down
-from continuum_dyn.step_figures import overshoot, rise_time, settling_time
+from continuum_dyn.answers.ring_down import fit_ring_down
+from continuum_dyn.answers.step_figures import overshoot, rise_time, settling_time
 from statics import InputError
 
 SPEED = 2 * pi * 5.0

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from continuum_dyn.turnings import monotonic_ways, turnings
+from continuum_dyn.answers.turnings import monotonic_ways, turnings
 
 
 def test_turning_points_are_the_extremes_of_a_sine() -> None:

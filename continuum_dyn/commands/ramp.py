@@ -13,7 +13,7 @@ from continuum_dyn.commands.show import duration, energy, length, make_folder, p
 from statics.errors import InputError
 
 if TYPE_CHECKING:
-    from continuum_dyn.ramp_answers import RampAnswers
+    from continuum_dyn.answers.ramp import RampAnswers
 
 
 def ramp(
@@ -37,9 +37,9 @@ def ramp(
     back: the loop between the two ways. Writes DIR/NAME_ramp.png. Exit status: 1 if an assertion does not
     hold.
     """
+    from continuum_dyn.answers.ramp import FIGURES, ramp_answers
+    from continuum_dyn.answers.ramp_rates import measured
     from continuum_dyn.logged_scenario import logged_scenario
-    from continuum_dyn.ramp_answers import FIGURES, ramp_answers
-    from continuum_dyn.ramp_rates import measured
     from continuum_dyn.record import read_log
     from continuum_dyn.views import ramp_plot
 

@@ -12,7 +12,7 @@ from continuum_dyn.commands.pictures import save
 from continuum_dyn.commands.show import duration, length, make_folder, plain_table
 
 if TYPE_CHECKING:
-    from continuum_dyn.settling_answers import Settling
+    from continuum_dyn.answers.settling import Settling
 
 CLEAR_MISFIT = 0.05
 """Misfit from which on a ring-down is told to be more than one damped sinusoid."""
@@ -34,8 +34,8 @@ def settle(
     linear mode at that equilibrium; and the gap that is left. Writes DIR/NAME_settle.png. Exit status:
     1 if an assertion does not hold.
     """
+    from continuum_dyn.answers.settling import FIGURES, settling
     from continuum_dyn.record import read_log
-    from continuum_dyn.settling_answers import FIGURES, settling
     from continuum_dyn.views import settling_plot
 
     asked = parsed(assertions or [], FIGURES)

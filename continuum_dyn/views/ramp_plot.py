@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from continuum_dyn.loops import on_both_ways
-from continuum_dyn.ramp_answers import Path, RampAnswers
+from continuum_dyn.answers.loops import on_both_ways
+from continuum_dyn.answers.ramp import Path, RampAnswers
 from continuum_dyn.views.axis_units import Axis, axis
 from statics.quantities import QUANTITIES
 

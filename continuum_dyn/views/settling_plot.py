@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from continuum_dyn.settling_answers import BANDS, Settling
+from continuum_dyn.answers.settling import BANDS, Settling
 from continuum_dyn.views.axis_units import Axis, axis
 
 SHADES = ("0.90", "0.80", "0.68")

@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from continuum_dyn.lag import delay, gap
-from continuum_dyn.loops import Loop, widest_gap, widest_loop, work_around
+from continuum_dyn.answers.lag import delay, gap
+from continuum_dyn.answers.loops import Loop, widest_gap, widest_loop, work_around
+from continuum_dyn.answers.turnings import monotonic_ways
 from continuum_dyn.record import Log
-from continuum_dyn.turnings import monotonic_ways
 from statics.errors import InputError
 
 FIGURES = (

@@ -6,9 +6,9 @@ from math import ceil
 
 import numpy as np
 
-from continuum_dyn.lag import gap, rate_within
-from continuum_dyn.pace import at_pace
-from continuum_dyn.ramp_answers import RampAnswers, RateLag
+from continuum_dyn.answers.lag import gap, rate_within
+from continuum_dyn.answers.pace import at_pace
+from continuum_dyn.answers.ramp import RampAnswers, RateLag
 from continuum_dyn.simulation import simulate
 from continuum_dyn.study import MotionStudy, Scenario
 from statics.errors import InputError

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from continuum_dyn.turnings import turnings
+from continuum_dyn.answers.turnings import turnings
 from statics.errors import InputError
 
 LEAST_SWING = 1e-3
