@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Monitor, check
+from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Budget, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Span, inputs_of, joined_spans
 from continuum_dyn.samples import Samples
@@ -48,7 +48,7 @@ def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
     y = dynamics.state(np.zeros((dynamics.scene.arm.segments, dynamics.dofs)))
     dynamics.clearance(y)
     if solver.method in (*TABLEAUX, "midpoint"):
-        unwatched = Monitor(inspect=lambda _t, _y: None)
+        unwatched = Monitor(inspect=lambda _t, _y: None, budget=Budget(steps=1))
         integrate(dynamics, [brief], np.array([brief.start, brief.end]), y, solver, unwatched)
         return
     dynamics.rate(span.start, y, span)

@@ -109,7 +109,7 @@ def test_all_that_was_flushed_is_there_after_kill_at_100_random_moments(run: Run
             assert flushed == 0
         else:
             assert_intact(found, run, flushed)
-    assert ended.count("unfinished") > MOMENTS / 4
+    assert ended.count("unfinished") > MOMENTS / 10
 
 
 def long_motion(folder: Path) -> Path:
@@ -130,7 +130,7 @@ def program(*arguments: str) -> subprocess.Popen[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(4))
+@pytest.mark.parametrize("number", range(2))
 def test_killed_run_is_resumed_to_the_answer_of_an_unbroken_one(number: int, tmp_path: Path) -> None:
     scenario, part = long_motion(tmp_path), tmp_path / "long.h5.part"
     unbroken = simulate(load_scenario(scenario))
@@ -138,7 +138,7 @@ def test_killed_run_is_resumed_to_the_answer_of_an_unbroken_one(number: int, tmp
     while not part.exists():
         assert process.poll() is None
         time.sleep(0.01)
-    time.sleep(Random(number).uniform(0.0, 1.5))
+    time.sleep(Random(number).uniform(0.0, 0.5))
     process.kill()
     process.communicate()
     assert not (tmp_path / "long.h5").exists()

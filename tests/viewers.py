@@ -99,7 +99,7 @@ def web_playback(log: Path, folder: Path) -> Iterator[tuple[str, set[str]]]:
         listening = [c for server in servers for c in server.net_connections() if c.status == "LISTEN"]
         yield address, {connection.laddr.ip for connection in listening}
         process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=PATIENCE) == 0
+        assert process.wait(timeout=PATIENCE) == 130
 
 
 class Chromium:
