@@ -231,6 +231,7 @@ def lowest_mode(scene: Scene) -> Mode:
     return modes(dynamics, dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs))), span)[0]
 
 
+@pytest.mark.slow
 def test_log_and_recording_have_the_base_where_it_was(shaken: Scenario, tmp_path: Path) -> None:
     run = simulate(replace(shaken, study=MotionStudy(0.1, samples=101, static_path=True)))
     write_log(run, tmp_path / "shaken.h5")

@@ -1,6 +1,7 @@
 """What accuracy costs: every method measured against one reference, every effect left out in turn."""
 
 import csv
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,27 +18,29 @@ from continuum_dyn.views import plots
 from statics import InputError, Payload
 
 
-@pytest.fixture
-def brief(monkeypatch: pytest.MonkeyPatch) -> Scenario:
+@pytest.fixture(scope="module")
+def brief() -> Iterator[Scenario]:
     """A fiftieth of a second of the step response, at a few tolerances, each run once."""
     few: dict[Method, tuple[float, ...]] = {
         "chain": (1e-4, 1e-6, 1e-8),
         "LSODA": (1e-4, 1e-7),
         "RK45": (1e-3,),
     }
-    monkeypatch.setattr(cost, "TOLERANCES", few)
-    monkeypatch.setattr(cost, "REPEATS", 1)
-    monkeypatch.setattr(cost, "SUBSEGMENTS", (1, 2, 4))
-    monkeypatch.setattr(cost, "PATIENCE", 0.5)
     scenario = load_scenario(SCENARIOS / "step_response.toml")
-    return replace(scenario, study=MotionStudy(0.02, samples=21))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cost, "TOLERANCES", few)
+        patch.setattr(cost, "REPEATS", 1)
+        patch.setattr(cost, "SUBSEGMENTS", (1, 2, 4))
+        patch.setattr(cost, "PATIENCE", 0.5)
+        yield replace(scenario, study=MotionStudy(0.02, samples=21))
 
 
-@pytest.fixture
-def prices(brief: Scenario, monkeypatch: pytest.MonkeyPatch) -> cost.Cost:
+@pytest.fixture(scope="module")
+def prices(brief: Scenario) -> cost.Cost:
     """Its cost without the effects, each of which is a structure to compile."""
-    monkeypatch.setattr(cost, "effects", lambda *_: [])
-    return cost.measure(brief)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cost, "effects", lambda *_: [])
+        return cost.measure(brief)
 
 
 def test_tighter_tolerances_give_smaller_errors_for_more_work(prices: cost.Cost) -> None:

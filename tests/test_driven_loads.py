@@ -47,6 +47,7 @@ def interpreted_rate(scenario: Scenario) -> np.ndarray:
     return kernel.rate(0.3, y, span.pieces, *tables, 1)
 
 
+@pytest.mark.slow
 def test_work_of_a_driven_load_is_booked(shaken: Scenario) -> None:
     """Factor times force times displacement, by the trapezoidal rule over fine samples."""
     load = DiskLoad(4, (0.0, 5e-3), driven=True)
@@ -69,6 +70,7 @@ def cable_length(found: Trajectory, sample: int) -> float:
     return float(np.sum(np.sinc(phi / 2 / np.pi) * (0.02 - phi * 0.008)))
 
 
+@pytest.mark.slow
 def test_small_oscillation_has_the_amplitude_and_phase_of_the_linear_arm(shaken: Scenario) -> None:
     """Against (i omega - A)^-1 b of the exact Jacobian, after the start has died out."""
     load, omega = DiskLoad(4, (0.0, 1e-5), driven=True), 2 * np.pi * 20.0
@@ -91,6 +93,7 @@ def test_small_oscillation_has_the_amplitude_and_phase_of_the_linear_arm(shaken:
     np.testing.assert_allclose(angle, expected, atol=2e-3 * np.abs(response[0]))
 
 
+@pytest.mark.slow
 def test_study_at_rest_takes_the_factor_as_it_is(shaken: Scenario) -> None:
     load = DiskLoad(4, (0.0, 0.02), driven=True)
     stepped = with_loads(shaken, load, factors=(Step(0.5, 1.0),))

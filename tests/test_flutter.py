@@ -142,6 +142,7 @@ def test_without_inertia_stability_is_not_judged_and_is_told_so(tmp_path: Path) 
     assert "stable" not in read_log(tmp_path / "jet.h5").equilibria
 
 
+@pytest.mark.slow
 def test_flutter_grows_in_the_motion_at_the_rate_and_frequency_of_its_mode(tmp_path: Path) -> None:
     found = modes_at_rest(edited(JET, tmp_path, ALONG, CONSTANT))
     (mode,) = (mode for mode in found.modes if mode.grows)

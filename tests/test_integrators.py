@@ -126,6 +126,7 @@ def test_tip_error_follows_the_tolerance(step_response: Scenario) -> None:
     assert min(errors.values()) > 0.1
 
 
+@pytest.mark.slow
 def test_two_methods_agree_on_a_reference_to_a_tenth_of_a_nanometre(step_response: Scenario) -> None:
     chain = motion(replace(step_response, solver=Solver("chain", rtol=1e-12, atol=1e-14)))
     radau = motion(replace(step_response, solver=Solver("Radau", rtol=1e-12, atol=1e-15)))

@@ -46,6 +46,7 @@ def test_verbose_tells_where_kernels_are_kept_and_each_stage_on_standard_error(
     assert "kernels" not in plain.stderr
 
 
+@pytest.mark.slow
 def test_without_cache_all_is_compiled_anew_to_the_same_answer_and_nothing_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -106,6 +106,7 @@ def test_chain_agrees_with_radau_on_its_exact_jacobian() -> None:
     assert tip_distance(chain, radau) < 2e-10
 
 
+@pytest.mark.slow
 def test_nodes_without_mass_are_the_limit_of_light_ones() -> None:
     massless = motion(drive(moving(meshed(3))))
     apart = [tip_distance(massless, motion(drive(moving(meshed(3, density=rho))))) for rho in (100.0, 1.0)]
@@ -122,6 +123,7 @@ def test_start_without_accelerations_keeps_the_order() -> None:
     assert all(error < 300 * rtol * 0.08 for error, rtol in zip(distances, (1e-6, 1e-8, 1e-10), strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("density", [None, 7800.0])
 def test_motion_tends_to_its_limit_with_second_order(density: float | None) -> None:
     runs = [motion(drive(moving(meshed(m, density=density)))) for m in (2, 4, 8)]
@@ -150,6 +152,7 @@ def continuous(scenario: Scenario) -> Trajectory:
     return extrapolated(*runs)
 
 
+@pytest.mark.slow
 def test_true_error_from_the_continuous_arm_is_below_what_was_asked_and_not_far_below() -> None:
     scenario = load_scenario(SCENARIOS / "continuous_arm.toml")
     exact = continuous(scenario)
@@ -186,6 +189,7 @@ def test_search_for_a_mesh_that_is_stopped_keeps_what_it_found() -> None:
     assert to_mesh(lambda _: None, 1e-9, most=4000) is None
 
 
+@pytest.mark.slow
 def test_mesh_that_the_budget_does_not_allow_ends_as_such() -> None:
     """The budget holds for each mesh; the first one's motion does not fit."""
     scenario = load_scenario(SCENARIOS / "continuous_arm.toml")
