@@ -44,7 +44,7 @@ from statics import (
 )
 from statics.ramp import ramp
 
-FEW, MANY = 20, 300
+FEW, MANY = 20, 100
 """Examples of a claim on each kind of scene: by default, and among the slow tests."""
 NOTHING = 1e-30
 """Numbers below this part of their range are drawn as zero: their products leave the range of floats."""

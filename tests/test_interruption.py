@@ -19,7 +19,7 @@ from statics.interruption import allowed, held
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
 
-MOMENTS = 100
+MOMENTS = 40
 WITHOUT_CACHE = 50
 """One of so many moments lies in a run that makes its kernels anew."""
 
