@@ -314,12 +314,7 @@ def _motion(
     )
     so_far = Run(scenario, Outcome.INTERRUPTED, "broken off while it ran", [start], solver=solver)
     with stage(f"motion by {solver.method}"):
-        if scenario.accuracy is not None:
-            moved = _moved_accurately(so_far, dynamics, stretches, y, monitor, sink)
-        elif begun is not None:
-            moved = _Moved(_moved_on(so_far, begun, dynamics, stretches, monitor, sink), solver, None)
-        else:
-            moved = _Moved(_moved(so_far, dynamics, stretches, y, monitor, sink), solver, None)
+        moved = _moved_as_asked(so_far, begun, dynamics, stretches, y, monitor, sink)
     _check_energies(scenario, moved, monitor)
     last = stretches[-1].inputs(np.array([study.duration]))[0]
     end, message = _end(statics, last, start, moved.trajectory, scenario.settled_within)
@@ -392,6 +387,24 @@ class _Moved(NamedTuple):
     trajectory: Trajectory
     solver: Solver
     tip_error: float | None
+
+
+def _moved_as_asked(
+    so_far: Run,
+    begun: Begun | None,
+    dynamics: Dynamics,
+    stretches: list[Span],
+    y: np.ndarray,
+    monitor: Monitor,
+    sink: Sink | None,
+) -> _Moved:
+    """The motion to the accuracy that is asked for, or from where it was broken off, or else from ``y``."""
+    assert so_far.solver is not None
+    if so_far.scenario.accuracy is not None:
+        return _moved_accurately(so_far, dynamics, stretches, y, monitor, sink)
+    if begun is not None:
+        return _Moved(_moved_on(so_far, begun, dynamics, stretches, monitor, sink), so_far.solver, None)
+    return _Moved(_moved(so_far, dynamics, stretches, y, monitor, sink), so_far.solver, None)
 
 
 def _moved(
