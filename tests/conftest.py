@@ -11,6 +11,7 @@ from hypothesis.internal.conjecture import providers
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.integrators import METHODS
+from continuum_dyn.record import Log, read_log, write_log
 from statics import (
     RONE2012_HOLE_OFFSET,
     Arm,
@@ -103,6 +104,13 @@ def motion(scenario: Scenario) -> Trajectory:
     trajectory = simulate(scenario).trajectory
     assert trajectory is not None
     return trajectory
+
+
+def logged(name: str, folder: Path) -> Log:
+    """The log of one of ``scenarios/``, run and written there, read back."""
+    path = folder / f"{name}.h5"
+    write_log(simulate(load_scenario(SCENARIOS / f"{name}.toml")), path)
+    return read_log(path)
 
 
 @pytest.fixture(scope="session")

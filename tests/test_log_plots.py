@@ -4,22 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENARIOS
+from conftest import logged
 from typer.testing import CliRunner
 
-from continuum_dyn import load_scenario, simulate
 from continuum_dyn.cli import app
-from continuum_dyn.record import Log, read_log, write_log
+from continuum_dyn.record import Log
 from continuum_dyn.views import log_plots
 from continuum_dyn.views.axis_units import axis
 from statics import InputError
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
-
-
-def logged(name: str, folder: Path) -> Log:
-    write_log(simulate(load_scenario(SCENARIOS / f"{name}.toml")), folder / f"{name}.h5")
-    return read_log(folder / f"{name}.h5")
 
 
 @pytest.fixture(scope="module")

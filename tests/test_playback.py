@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SCENARIOS
+from conftest import logged
 from playback_entities import entities_of
 from rerun.chunk import RrdReader
 from typer.testing import CliRunner
 
-from continuum_dyn import load_scenario, simulate
 from continuum_dyn.cli import app
-from continuum_dyn.record import Log, read_log, write_log
+from continuum_dyn.record import Log
 from continuum_dyn.views.playback import story as playback_story
 from continuum_dyn.views.playback.arm import POINTS_PER_SEGMENT
 from continuum_dyn.views.playback.recording import save
@@ -29,20 +28,14 @@ def assert_close(actual: Any, expected: Any, within: float = 1e-8) -> None:
     np.testing.assert_allclose(actual, expected, rtol=0.0, atol=within)
 
 
-def log_of(name: str, folder: Path) -> Log:
-    path = folder / f"{name}.h5"
-    write_log(simulate(load_scenario(SCENARIOS / f"{name}.toml")), path)
-    return read_log(path)
-
-
 @pytest.fixture(scope="module")
 def motion(tmp_path_factory: pytest.TempPathFactory) -> Log:
-    return log_of("step_response", tmp_path_factory.mktemp("motion"))
+    return logged("step_response", tmp_path_factory.mktemp("motion"))
 
 
 @pytest.fixture(scope="module")
 def ramp(tmp_path_factory: pytest.TempPathFactory) -> Log:
-    return log_of("tension_ramp", tmp_path_factory.mktemp("ramp"))
+    return logged("tension_ramp", tmp_path_factory.mktemp("ramp"))
 
 
 def shown(log: Log, folder: Path) -> dict[str, dict[str, list[Any]]]:
@@ -138,7 +131,7 @@ def test_a_ramp_is_a_sequence_of_points(ramp: Log, tmp_path: Path) -> None:
 
 
 def test_an_arm_without_cables_is_drawn_without_them(tmp_path: Path) -> None:
-    entities = shown(log_of("unactuated", tmp_path), tmp_path)
+    entities = shown(logged("unactuated", tmp_path), tmp_path)
     assert "/series/tension" not in entities
     assert not [path for path in entities if path.startswith("/arm/cables")]
     disk_width = np.ptp(points(entities["/arm/disks"])[0, 0, :, 1])

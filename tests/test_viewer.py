@@ -10,14 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SCENARIOS
+from conftest import logged
 from logs_by_hand import motion_log
 from matplotlib.image import imread
 from rerun.chunk import RrdReader
 from viewers import Chromium, ended_after, headless_viewer, needs_chromium, needs_vulkan, until, web_playback
 
-from continuum_dyn import load_scenario, simulate
-from continuum_dyn.record import read_log, write_log
 from continuum_dyn.views.playback import viewer
 from continuum_dyn.views.playback.recording import save
 from statics.errors import LogError
@@ -26,12 +24,6 @@ SCENES = ("length_driven", "shaken_base", "shaken_tip", "tension_ramp")
 """With slack cables, a base that moves, loads, and equilibria alone."""
 MOMENTS = (0.1, 0.6, 1.0)
 """Parts of the time line that are looked at."""
-
-
-def logged(name: str, folder: Path) -> Path:
-    path = folder / f"{name}.h5"
-    write_log(simulate(load_scenario(SCENARIOS / f"{name}.toml")), path)
-    return path
 
 
 def is_drawn(picture: bytes) -> bool:
@@ -79,7 +71,7 @@ def test_the_viewer_of_this_environment_answers() -> None:
 )
 def test_rerun_draws_every_view_without_trouble(names: tuple[str, ...], tmp_path: Path) -> None:
     recording = tmp_path / "playback.rrd"
-    save([read_log(logged(name, tmp_path)) for name in names], recording)
+    save([logged(name, tmp_path) for name in names], recording)
     with headless_viewer(recording, tmp_path) as client:
         line = next(t for t in client.get_state().recordings[0].timelines if t.name in ("sim_time", "point"))
         assert line.start is not None
@@ -101,7 +93,7 @@ def test_rerun_draws_every_view_without_trouble(names: tuple[str, ...], tmp_path
 @pytest.mark.slow
 @needs_chromium
 def test_chromium_draws_what_play_web_serves_to_this_computer_alone(tmp_path: Path) -> None:
-    with web_playback(logged("step_response", tmp_path), tmp_path) as (address, listening):
+    with web_playback(logged("step_response", tmp_path).path, tmp_path) as (address, listening):
         assert address.startswith("http://127.0.0.1:")
         assert listening == {"127.0.0.1"}
         browser = Chromium(tmp_path)
