@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from continuum_dyn import load_scenario
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integration import integrate, warm_up
 from continuum_dyn.integrators import Budget, Monitor
 from continuum_dyn.profiles import Span, Step, spans

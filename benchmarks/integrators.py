@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from continuum_dyn import Scenario, Trajectory, load_scenario
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.profiles import spans

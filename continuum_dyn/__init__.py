@@ -5,7 +5,7 @@ What is exported is loaded when it is first asked for.
 
 from typing import TYPE_CHECKING
 
-from statics.lazy_names import loaded_when_asked_for
+from statics.support.lazy_names import loaded_when_asked_for
 
 if TYPE_CHECKING:
     from continuum_dyn.scenario import load_scenario

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.profiles import Span, inputs_of
 from continuum_dyn.study import Solver
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from continuum_dyn.accuracy import tip_distance
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.mesh import between
@@ -22,7 +22,7 @@ from continuum_dyn.study import Method, MotionStudy, Scenario, Solver
 from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
-from statics.exact_rod import RodError, exact_rod
+from statics.judges.exact_rod import RodError, exact_rod
 
 TOLERANCES: dict[Method, tuple[float, ...]] = {
     "chain": (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),

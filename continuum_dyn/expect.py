@@ -7,7 +7,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from continuum_dyn.study import Method
-from statics.checked import STRICT, NonNegative, Positive
+from statics.support.checked import STRICT, NonNegative, Positive
 from statics.outcome import Outcome
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import OdeSolver
 
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Budget, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Span, inputs_of, joined_spans

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse.linalg import LinearOperator, eigs
 
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.profiles import Constant, Span, spans
 from continuum_dyn.study import Scenario
-from statics import codegen
+from statics.kernels import loading as codegen
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.outcome import Outcome

@@ -13,7 +13,7 @@ from typing import Any, get_origin
 
 from continuum_dyn.scenario_file import ScenarioFile
 from continuum_dyn.toml_text import toml_text
-from statics.checked import LONGEST_LINE
+from statics.support.checked import LONGEST_LINE
 from statics.errors import InputError, did_you_mean
 
 LISTS = [name for name, field in ScenarioFile.model_fields.items() if get_origin(field.annotation) is list]

@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from statics.checked import STRICT, NonNegative, Positive
+from statics.support.checked import STRICT, NonNegative, Positive
 from statics.errors import InputError
 
 TIME_RESOLUTION = 1e-300

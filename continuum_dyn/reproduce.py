@@ -10,8 +10,8 @@ from statics.arm import RONE2012_HOLE_OFFSET, Arm, Cable
 from statics.effects import Bending, Cables, Extension, Gravity
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError, did_you_mean
-from statics.exact_rod import RodShape, exact_rod
-from statics.rone2012 import PrintedArm, PrintedShape
+from statics.judges.exact_rod import RodShape, exact_rod
+from statics.judges.rone2012 import PrintedArm, PrintedShape
 from statics.scene import Scene
 
 PAPERS = ("rone2012",)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.trajectory import Trajectory, joined, trajectory_of
 
 INTERVAL = 1.0

@@ -17,7 +17,7 @@ from continuum_dyn.study import (
 )
 from continuum_dyn.table_file import MAX_ROWS
 from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassPerDisk, Payload, PerDisk
-from statics.checked import STRICT, Line, NonNegative, Positive, Vector
+from statics.support.checked import STRICT, Line, NonNegative, Positive, Vector
 
 
 class TableFile(BaseModel):

@@ -12,7 +12,7 @@ import numpy as np
 
 from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.begun import Begun
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.energy_balance import broken_ledger
 from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
@@ -27,10 +27,10 @@ from continuum_dyn.trajectory import Trajectory
 from statics.arc_length import MOST_STEPS, follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
-from statics.interruption import Interruption, allowed, held
+from statics.support.interruption import Interruption, allowed, held
 from statics.outcome import Outcome
 from statics.ramp import limit_on_the_way, ramp
-from statics.stages import stage
+from statics.support.stages import stage
 
 TIME_PART = 0.25
 """Part of the accuracy that a mesh's integration may use up; two extrapolated use nearly twice that."""

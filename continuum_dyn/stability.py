@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.modes import NEUTRAL, check, linearized, still
 from statics.equilibria import Equilibrium
 from statics.errors import InputError

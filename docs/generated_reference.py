@@ -11,7 +11,7 @@ import typer
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-import continuum_dyn.dynamics
+import continuum_dyn.equations.dynamics
 import continuum_dyn.effects
 import continuum_dyn.modes
 import continuum_dyn.profiles
@@ -267,7 +267,7 @@ PUBLIC: dict[Any, Iterable[str]] = {
     ],
     continuum_dyn.profiles: [*(profile.__name__ for profile in PROFILES.values()), "Span", "spans"],
     continuum_dyn.study: [*(study.__name__ for study in STUDIES.values()), "Solver", "Accuracy"],
-    continuum_dyn.dynamics: ["Dynamics", "Observation"],
+    continuum_dyn.equations.dynamics: ["Dynamics", "Observation"],
     continuum_dyn.modes: ["modes_at_rest", "RestModes", "Mode"],
 }
 

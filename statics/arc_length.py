@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from statics import search
+from statics.passes import newton, search
 from statics.equilibria import Critical, Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.outcome import Outcome
@@ -136,8 +136,7 @@ class ArcLength:
     def __init__(self, solver: StaticSolver, ramp: np.ndarray) -> None:
         self.solver, self.kernel, self.ramp = solver, solver.kernel, ramp
         segments, dofs = solver.scene.arm.segments, len(solver.scene.coordinates)
-        self.chain = np.empty((segments, self.kernel.CHAIN_COLUMNS))
-        self.pivots = np.empty((segments, self.kernel.PIVOT_COLUMNS))
+        self.chain = np.empty((segments, self.kernel.widths["chain"]))
         units = np.array([1.0, solver.scene.arm.rest_length])[:dofs]
         self.by_length = solver.scene.driven_by_length
         self.half_difference = NEARBY if self.by_length else HALF_DIFFERENCE
@@ -152,9 +151,8 @@ class ArcLength:
     def residual(self, q: np.ndarray, inputs: np.ndarray) -> tuple[np.ndarray, float]:
         """Unbalanced generalized forces, shape of q, and the clearance."""
         solver, residual = self.solver, np.empty_like(q)
-        clearance = self.kernel.pose_sweep(q, inputs, solver.segments, solver.disks, self.chain)[2]
-        self.kernel.residual_sweep(solver.disks, self.chain, residual)
-        return residual, clearance
+        numbers = (inputs, solver.segments, solver.disks, self.chain)
+        return residual, newton.unbalanced(self.kernel.passes, q, *numbers, residual)
 
     def by_place(self, q: np.ndarray, place: float) -> np.ndarray:
         """Derivative of the residual by the place on the ramp."""
@@ -167,17 +165,16 @@ class ArcLength:
         """Which cables pull at a place: of those driven by their length some may be slack."""
         solver, pose = self.solver, np.empty((len(at.q), 3))
         inputs = self.inputs(at.place)
-        self.kernel.observe(at.q, inputs, solver.segments, solver.disks, self.chain, pose)
+        numbers = (inputs, solver.segments, solver.disks, self.chain)
+        self.kernel.run("observe", at.q, *numbers, pose)
         disks = pose[solver.scene.arm.disk_nodes].T
         return (solver.scene.driven_by(inputs, *disks)["tension"] > 0.0).tolist()
 
     def solve(self, right: np.ndarray) -> tuple[np.ndarray, int]:
         """-H^-1 right, for the q of the last ``residual``; and the number of H's negative eigenvalues."""
-        solver, descent, change = self.solver, np.empty_like(right), np.empty_like(right)
-        numbers = (solver.segments, solver.disks, self.chain, right, descent, self.pivots)
-        negative = self.kernel.eliminate_exactly(*numbers)
-        self.kernel.substitute_sweep(self.chain, descent, change)
-        return change, negative
+        solver, change = self.solver, np.empty_like(right)
+        numbers = (solver.segments, solver.disks, self.chain, right, change)
+        return change, newton.solve_exactly(self.kernel.passes, *numbers)
 
     def tangent_at(
         self, q: np.ndarray, place: float, backwards: bool = False

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from statics import codegen, search
 from statics.arm import Arm
 from statics.effects.cable_friction import FAR, SLIP_PART
 from statics.effects.cables import Poses, cable_lengths
 from statics.outcome import Outcome
 from statics.scene import Scene
-from statics.statics_kernel import RECIPE
+from statics.kernels.loading import Loader, load
+from statics.passes import newton, pseudo_transient, search
+from statics.passes.rest_passes import REST
 
 MAX_ITERATIONS = 200
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
@@ -142,11 +143,11 @@ class StaticSolver:
     ``load`` makes the kernel: compiled, or interpreted.
     """
 
-    def __init__(self, scene: Scene, load: codegen.Loader = codegen.load) -> None:
+    def __init__(self, scene: Scene, load: Loader = load) -> None:
         self.scene = scene.at_rest
-        self.kernel = load(self.scene, RECIPE)
-        self.segments = self.scene.table("segment", self.kernel.SEGMENT_COLUMNS)
-        self.disks = self.scene.table("disk", self.kernel.DISK_COLUMNS)
+        self.kernel = load(self.scene.structure, REST)
+        self.segments = self.scene.table("segment", self.kernel.segment_columns)
+        self.disks = self.scene.table("disk", self.kernel.disk_columns)
 
     def solve(
         self,
@@ -161,14 +162,14 @@ class StaticSolver:
         """
         arm, left = self.scene.arm, list[Equilibrium]()
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
-        ended, iterations = search.NOT_FOUND, 0
+        ended, iterations, passes = search.NOT_FOUND, 0, self.kernel.passes
         for slip_part in self._remember(before):
             self._set("slip_length", np.full(arm.segments, slip_part * arm.total_length))
             ended, more = self._find(q, inputs, MAX_ITERATIONS)
             iterations += more
             while ended == search.UNSTABLE and iterations < MAX_ITERATIONS:
                 left.append(self.examine(q, inputs, ended, iterations))
-                if not self.kernel.leave_saddle(q, inputs, self.segments, self.disks, arm.rest_length):
+                if not newton.leave_saddle(passes, q, inputs, self.segments, self.disks, arm.rest_length):
                     return left.pop()
                 ended, more = self._find(q, inputs, MAX_ITERATIONS - iterations)
                 iterations += more
@@ -177,13 +178,17 @@ class StaticSolver:
     def _find(self, q: np.ndarray, inputs: np.ndarray, most: int) -> tuple[int, int]:
         """Move q to an equilibrium; returns how the search ended, and its iterations."""
         numbers = (inputs, self.segments, self.disks, self.scene.arm.rest_length)
-        return self.kernel.find_equilibrium(q, *numbers, most)
+        find = newton.find_stable if self.kernel.conservative else pseudo_transient.find_balance
+        return find(self.kernel.passes, q, *numbers, most)
 
     def examine(self, q: np.ndarray, inputs: np.ndarray, ended: int, iterations: int = 0) -> Equilibrium:
         """All that is told of coordinates, shape (segments, dofs), at which a search has ``ended``."""
         arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
-        elastic, gravity, residual, negative = self.kernel.examine(q, inputs, self.segments, self.disks, pose)
+        examine = newton.examine_stability if self.kernel.conservative else pseudo_transient.examine_balance
+        elastic, gravity, residual, negative = examine(
+            self.kernel.passes, q, inputs, self.segments, self.disks, pose
+        )
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         driven = self.scene.driven_by(inputs, disk_x, disk_y, disk_theta)
@@ -223,7 +228,7 @@ class StaticSolver:
 
     def _set(self, name: str, values: np.ndarray) -> None:
         """Fill the columns of a quantity, numbered or not, where the kernel has them."""
-        for column, known in enumerate(self.kernel.SEGMENT_COLUMNS):
+        for column, known in enumerate(self.kernel.segment_columns):
             if known == name or known.rpartition("_")[0] == name:
                 self.segments[:, column] = values
 

@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from statics.arm import Arm, CableKind
+from statics.core_mass import FRACTIONS
 from statics.effects import DiskLoads, Effect
 from statics.effects.cables import Poses, cable_lengths
 from statics.errors import InputError, did_you_mean
+from statics.structure import Structure
 
 MAX_ALIKE = 20
 """Most cables, or loads that change in time, or payloads on one disk: deriving them takes time for each."""
@@ -60,6 +62,23 @@ class Scene:
                     f"Give {quantity}, or leave '{effect.name}' out."
                 )
         effect.columns(self.arm)
+
+    @cached_property
+    def structure(self) -> Structure:
+        """What the scene's equations are derived from."""
+        return Structure(
+            effects=tuple(type(effect) for effect in self.effects),
+            coordinates=self.coordinates,
+            inputs=self.inputs,
+            cable_kinds=self.cable_kinds,
+            holes_differ=self.holes_differ,
+            has_subsegments=self.has_subsegments,
+            payloads=self.payloads,
+            followers_among_driven=self.followers_among_driven,
+            has_followers=self.has_followers,
+            core_fractions=FRACTIONS if self.core_has_mass else (),
+            base_moves=self.arm.base_moves,
+        )
 
     @property
     def at_rest(self) -> "Scene":
@@ -186,7 +205,7 @@ class Scene:
         return self.arm.core_density is not None and any(effect.place == "mass" for effect in self.effects)
 
     @property
-    def spans(self) -> bool:
+    def has_subsegments(self) -> bool:
         """Whether cables run past nodes that are not disks: then they join poses further apart."""
         return self.cables > 0 and self.arm.subsegments > 1
 

@@ -10,7 +10,7 @@ from conftest import MOTION, UPPER, rone2012
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from continuum_dyn import motion_kernel
+from continuum_dyn.equations import in_motion as motion_kernel
 from statics import (
     Arm,
     Base,
@@ -28,8 +28,8 @@ from statics import (
     statics_kernel,
 )
 from statics.equilibria import Equilibrium
-from statics.exact_rod import exact_rod
-from statics.rone2012 import PrintedArm
+from statics.judges.exact_rod import exact_rod
+from statics.judges.rone2012 import PrintedArm
 
 ANGLES, PLACES = st.floats(-7.0, 7.0), st.floats(-1.0, 1.0)
 

@@ -115,7 +115,7 @@ def test_work_around_the_loop_is_what_friction_takes() -> None:
 
 def test_cable_without_friction_leaves_no_trace() -> None:
     """With a coefficient of zero nothing of it is in the generated source."""
-    from statics import statics_kernel
+    from statics.derivation import at_rest as statics_kernel
 
     without = Scene(rubbing().arm, (Bending(), Extension(), Gravity(), Cables()))
     sources = [statics_kernel.write(scene).partition("\n\n")[2] for scene in (rubbing(0.0), without)]

@@ -19,14 +19,14 @@ from whole_arm import (
     tapered_scene,
 )
 
-from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.motion_kernel import RECIPE as MOTION
+from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.equations.in_motion import RECIPE as MOTION
 from continuum_dyn.profiles import Span
 from statics import codegen, equilibria
 from statics.arm import Cable
 from statics.equilibria import StaticSolver
 from statics.scene import Scene
-from statics.statics_kernel import RECIPE as STATICS
+from statics.derivation.at_rest import RECIPE as STATICS
 
 SEEDS = range(10)
 TIME = 0.3

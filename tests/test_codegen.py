@@ -12,7 +12,7 @@ from continuum_dyn import Scenario, implicit_kernel, motion_kernel, simulate
 from continuum_dyn.profiles import Constant
 from continuum_dyn.study import MotionStudy
 from statics import Scene, codegen, equilibrium, statics_kernel
-from statics.statics_kernel import RECIPE
+from statics.derivation.at_rest import RECIPE
 
 
 @pytest.fixture

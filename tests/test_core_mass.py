@@ -11,12 +11,12 @@ from conftest import moving, rone2012
 from whole_arm import WholeArm, directional, heavy_scene, random_state
 
 from continuum_dyn import implicit_kernel, midpoint_kernel, motion_kernel
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.effects import Inertia
 from statics import Arm, Bending, Gravity, Payload, Scene, codegen, equilibrium, statics_kernel
 from statics.core_mass import AT_END, AT_POINT, FRACTIONS
 from statics.effects import Effect
-from statics.exact_rod import exact_rod
+from statics.judges.exact_rod import exact_rod
 
 WRITERS = (motion_kernel.write, implicit_kernel.write, midpoint_kernel.write, statics_kernel.write)
 

@@ -9,7 +9,7 @@ from conftest import UPPER
 from one_of_each import ONE_OF_EACH
 from whole_arm import random_state
 
-from continuum_dyn import motion_kernel
+from continuum_dyn.equations import in_motion as motion_kernel
 from continuum_dyn.effects import (
     EFFECTS,
     LinearDrag,
@@ -17,7 +17,7 @@ from continuum_dyn.effects import (
     MaterialDamping,
     QuadraticDrag,
 )
-from continuum_dyn.virtual_power import derive_dynamics, partial_velocity
+from continuum_dyn.equations.virtual_power import derive_dynamics, partial_velocity
 from statics import (
     Arm,
     DiskLoad,
@@ -32,8 +32,8 @@ from statics import (
 from statics.arm import CableKind
 from statics.effects import Effect
 from statics.quantities import QUANTITIES
-from statics.segment import DiskSymbols, SegmentSymbols
-from statics.virtual_work import collect, partial_displacement
+from statics.derivation.segment import DiskSymbols, SegmentSymbols
+from statics.derivation.virtual_work import collect, partial_displacement
 
 ARM = Arm.preset("rone2012", cables=(replace(UPPER, friction=0.2),))
 WITHOUT_EFFECT: tuple[Effect, ...] = (

@@ -26,7 +26,7 @@ from statics import (
     equilibrium,
 )
 from statics.effects import Effect
-from statics.exact_rod import RodError, RodShape, exact_rod
+from statics.judges.exact_rod import RodError, RodShape, exact_rod
 
 UM = 1e-6
 

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from continuum_dyn import simulate
 from continuum_dyn.cli import app
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes, modes_at_rest, still

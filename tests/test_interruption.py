@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from continuum_dyn.cli import app
 from continuum_dyn.record import read_log
 from statics import Outcome
-from statics.interruption import allowed, held
+from statics.support.interruption import allowed, held
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
 
@@ -117,7 +117,7 @@ def test_interrupted_motion_is_logged_up_to_there(tmp_path: Path) -> None:
 
 
 def test_interrupted_while_compiling_leaves_a_log_that_says_so(tmp_path: Path) -> None:
-    place = "statics.codegen:_module"
+    place = "statics.kernels.loading:_module"
     found = interrupted(long_motion(tmp_path), tmp_path / "out", "--no-cache", place=place)
     check(found)
     assert found.log is not None

@@ -23,7 +23,7 @@ from whole_arm import (
 )
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, modes, simulate
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.effects import MaterialDamping
 from continuum_dyn.integrators import MidpointSolver
 from continuum_dyn.midpoint_kernel import RECIPE

@@ -4,7 +4,7 @@ import ast
 
 from conftest import moving, rone2012
 
-from continuum_dyn.operations import added_by_each, count, operations
+from continuum_dyn.equations.operations import added_by_each, count, operations
 
 
 def test_arithmetic_and_calls_count_and_numbers_do_not() -> None:

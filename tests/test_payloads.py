@@ -12,13 +12,13 @@ from scipy.optimize import brentq
 from whole_arm import difference_matrix, full_scene, gradient, random_state, relative_error, spanned_scene
 
 from continuum_dyn import Scenario, midpoint_kernel, motion_kernel, simulate
-from continuum_dyn.dynamics import LEDGER
+from continuum_dyn.equations.dynamics import LEDGER
 from continuum_dyn.effects import MassDamping
 from continuum_dyn.profiles import Step
 from continuum_dyn.study import MotionStudy, Solver, StepResponseStudy
 from statics import Arm, Bending, Gravity, InputError, Outcome, Payload, Scene, codegen, equilibrium
 from statics import statics_kernel as at_rest
-from statics.exact_rod import exact_rod
+from statics.judges.exact_rod import exact_rod
 
 PIECES = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0], [0.0, 0.7, 0.0, 0.0, 0.0, 0.0]])
 TENSION = PIECES[:, 1]

@@ -24,8 +24,8 @@ from continuum_dyn.reproduce import (
 )
 from continuum_dyn.views import plots
 from statics import Arm, Equilibrium, Extension, InputError, Scene, equilibrium
-from statics.exact_rod import RodShape
-from statics.rone2012 import PrintedArm, PrintedError, jacobians, local_jacobians, local_poses, poses
+from statics.judges.exact_rod import RodShape
+from statics.judges.rone2012 import PrintedArm, PrintedError, jacobians, local_jacobians, local_poses, poses
 
 MM, UM = 1e-3, 1e-6
 SEEDS = range(10)

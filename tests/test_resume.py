@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from continuum_dyn import Scenario, load_scenario, samples, simulate
 from continuum_dyn.begun import Begun
 from continuum_dyn.cli import app
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Budget
 from continuum_dyn.logged_motion import logged_motion
 from continuum_dyn.logged_scenario import logged_scenario

@@ -10,7 +10,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from statics.sigma import Sigma, ladder_source
+from statics.derivation.sigma import Sigma, ladder_source
 
 ORDERS = (1, 2, 3)
 

@@ -21,7 +21,7 @@ from continuum_dyn.effects import (
     QuadraticDrag,
     RotaryInertia,
 )
-from continuum_dyn.motion_kernel import RECIPE
+from continuum_dyn.equations.in_motion import RECIPE
 from statics import (
     Arm,
     Base,

@@ -22,7 +22,7 @@ from statics import (
     Scene,
     equilibrium,
 )
-from statics.exact_rod import exact_rod
+from statics.judges.exact_rod import exact_rod
 
 
 def stepped(moments: tuple[float, ...], stiffness: tuple[float, ...], spacing: tuple[float, ...]) -> Scene:

@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 from statics import Arm, Bending, Scene, codegen
-from statics.codegen import Recipe
-from statics.compose import HEADER
+from statics.kernels.loading import Recipe
+from statics.kernels.printing import HEADER
 
 SCENE = Scene(Arm.preset("rone2012"), (Bending(),))
 
@@ -35,7 +35,7 @@ def answer(factor: float) -> float:
 
 def main() -> None:
     """Answer in a process of its own, when told to."""
-    import statics.compiled_code  # noqa: F401, so that what takes long is done before
+    import statics.kernels.compiled  # noqa: F401, so that what takes long is done before
 
     print("ready", flush=True)
     sys.stdin.readline()

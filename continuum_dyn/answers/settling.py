@@ -10,13 +10,13 @@ from scipy.interpolate import CubicSpline
 from continuum_dyn.answers.last_change import LastChange, last_change
 from continuum_dyn.answers.ring_down import FEWEST_SAMPLES, RingDown, fit_ring_down
 from continuum_dyn.answers.step_figures import overshoot, rise_time, settling_time
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.logged_scenario import logged_scenario
 from continuum_dyn.modes import FEW_COORDINATES, Mode, check, modes, still
 from continuum_dyn.profiles import spans
 from continuum_dyn.record import Log
 from continuum_dyn.study import MotionStudy, Scenario
-from statics import codegen
+from statics.kernels import loading as codegen
 from statics.errors import InputError
 
 BANDS = {"settling_time_5": 0.05, "settling_time_2": 0.02, "settling_time_1": 0.01}

@@ -10,7 +10,7 @@ import typer
 
 from continuum_dyn.commands.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.show import length, make_folder, plain_table, with_status
-from statics.interruption import held
+from statics.support.interruption import held
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -21,7 +21,7 @@ def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
     """What each effect adds to a segment, and to the range of rates about rest."""
     from rich.console import Console
 
-    from continuum_dyn.operations import added_by_each, operations
+    from continuum_dyn.equations.operations import added_by_each, operations
 
     scene = scenario.scene
     columns = ("What each adds to a segment", "coordinate", "operations")

@@ -80,7 +80,7 @@ def _modes(scenario: Any) -> Any:
 
 
 def _print_method(scenario: Any) -> None:
-    from continuum_dyn.dynamics import Dynamics
+    from continuum_dyn.equations.dynamics import Dynamics
     from continuum_dyn.integrators import choose
     from continuum_dyn.profiles import spans
     from continuum_dyn.study import MotionStudy
@@ -96,8 +96,8 @@ def _print_method(scenario: Any) -> None:
 
 
 def _print_equations(scene: Any, latex: bool) -> None:
-    from continuum_dyn.virtual_power import derive_dynamics
-    from statics.virtual_work import collect
+    from continuum_dyn.equations.virtual_power import derive_dynamics
+    from statics.derivation.virtual_work import collect
 
     forces = derive_dynamics(scene)
     write = _latex if latex else _text
@@ -179,7 +179,7 @@ def _lettered(value: Any, used: set[str], sigma: str) -> Any:
     """The expression in the customary letters; ``sigma`` is the pattern for sigma_n(h), h = phi / 2."""
     import sympy as sp
 
-    from statics.sigma import Sigma
+    from statics.derivation.sigma import Sigma
 
     if isinstance(value, tuple):
         return tuple(_lettered(part, used, sigma) for part in value)

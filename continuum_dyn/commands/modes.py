@@ -8,7 +8,7 @@ import typer
 
 from continuum_dyn.commands.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.show import make_folder, mode_row, plain_table
-from statics.interruption import held
+from statics.support.interruption import held
 
 if TYPE_CHECKING:
     from continuum_dyn.modes import RestModes

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from statics.errors import LogError
-from statics.interruption import held
+from statics.support.interruption import held
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

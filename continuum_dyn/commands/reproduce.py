@@ -8,7 +8,7 @@ import typer
 
 from continuum_dyn.commands.arguments import Folder
 from continuum_dyn.commands.show import make_folder, plain_table
-from statics.interruption import held
+from statics.support.interruption import held
 
 if TYPE_CHECKING:
     import numpy as np

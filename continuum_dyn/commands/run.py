@@ -16,8 +16,8 @@ from continuum_dyn.commands.show import length, make_folder
 from continuum_dyn.commands.verbosity import shows_progress
 from continuum_dyn.extras import MissingExtraError, extras_named
 from statics.errors import InputError
-from statics.interruption import held
-from statics.stages import stage
+from statics.support.interruption import held
+from statics.support.stages import stage
 
 if TYPE_CHECKING:
     from continuum_dyn.begun import Begun

@@ -10,7 +10,7 @@ import typer
 
 from continuum_dyn.commands.verbosity import quiet, verbose
 from statics.errors import InputError
-from statics.kernel_files import no_cache
+from statics.kernels.kept_files import no_cache
 
 PANEL = "Options of every command"
 

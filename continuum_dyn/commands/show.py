@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from continuum_dyn.commands.verbosity import shows_progress
 from statics.errors import LogError
-from statics.interruption import held
+from statics.support.interruption import held
 
 if TYPE_CHECKING:
     from continuum_dyn.modes import Mode

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import typer
 
-from statics.kernel_files import kernel_folder
-from statics.stages import LOG
+from statics.kernels.kept_files import kernel_folder
+from statics.support.stages import LOG
 
 
 class _OnStandardError(logging.Handler):

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.checked import STRICT, NonNegative
+from statics.support.checked import STRICT, NonNegative
 from statics.effects.effect import Account, Pair, Place
 
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
-from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integrators.esdirk import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
+from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.integrators.runge_kutta import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.profiles import Span
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.modes import rates
 from continuum_dyn.profiles import Span
 from continuum_dyn.study import Method, dissipated_by

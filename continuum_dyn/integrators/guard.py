@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from continuum_dyn.study import Solver
-from statics.interruption import Interruption
+from statics.support.interruption import Interruption
 from statics.outcome import Outcome
 
 Item = TypeVar("Item")

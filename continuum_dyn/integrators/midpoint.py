@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from continuum_dyn.equations_of_motion import displacement, inputs_at
+    from continuum_dyn.equations.motion_passes import displacement, inputs_at
     from continuum_dyn.generated import (
         CHAIN_COLUMNS,
         ELIMINATE_START,

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
-from continuum_dyn.dynamics import Dynamics
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators.midpoint import PAST
 from continuum_dyn.profiles import Span
 

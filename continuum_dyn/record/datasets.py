@@ -10,7 +10,7 @@ import numpy as np
 
 from continuum_dyn.record.log_format import PLOTTED, Column
 from statics.errors import LogError
-from statics.interruption import held
+from statics.support.interruption import held
 from statics.quantities import QUANTITIES
 
 CHUNK = 512

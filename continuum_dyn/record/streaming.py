@@ -29,7 +29,7 @@ from continuum_dyn.record.writing import (
 from continuum_dyn.simulation import Run
 from continuum_dyn.trajectory import Trajectory
 from statics.errors import LogError
-from statics.interruption import held
+from statics.support.interruption import held
 
 ROOM = 200_000
 """Bytes kept free beside a block's chunks, for what HDF5 notes of them."""

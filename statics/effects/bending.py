@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.checked import STRICT
+from statics.support.checked import STRICT
 from statics.effects.effect import Account, Pair, Place
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.checked import STRICT
+from statics.support.checked import STRICT
 from statics.effects.effect import Account, Pair, Place
 
 SLIP_PART = 1e-6

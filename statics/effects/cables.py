@@ -6,7 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm, Cable
-from statics.checked import STRICT
+from statics.support.checked import STRICT
 from statics.effects.effect import Account, Pair, Place
 
 

@@ -12,7 +12,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm, DiskNumber
-from statics.checked import STRICT, Vector
+from statics.support.checked import STRICT, Vector
 from statics.effects.effect import Account, Pair, Place
 from statics.errors import InputError
 

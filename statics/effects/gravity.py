@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.checked import STRICT, Vector
+from statics.support.checked import STRICT, Vector
 from statics.effects.effect import Account, Pair, Place
 
 

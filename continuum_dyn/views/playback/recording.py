@@ -20,7 +20,7 @@ from continuum_dyn.views.playback.legend import legend
 from continuum_dyn.views.playback.measures import Measures, measures_of
 from continuum_dyn.views.playback.story import Story, names_of, story_of
 from statics.errors import InputError, LogError
-from statics.interruption import held
+from statics.support.interruption import held
 
 APPLICATION = "continuum-dyn"
 

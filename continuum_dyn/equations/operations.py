@@ -1,0 +1,63 @@
+"""Arithmetic of a scene's generated steps, counted in their source: what each effect adds to a segment."""
+
+import ast
+
+from continuum_dyn.equations import motion_steps
+from continuum_dyn.equations.virtual_power import derive_dynamics
+from statics.derivation import recursion
+from statics.kernels.printing import compose
+from statics.errors import InputError
+from statics.scene import Scene
+from statics.derivation.virtual_work import derive_statics
+
+
+def operations(scene: Scene) -> int:
+    """Operations per segment of one evaluation: outward loads, residual, elimination, substitution.
+
+    In motion, with the matrix of an implicit stage, or at rest for a scene without inertia. Counted are
+    + - * / ** and signs, unless their operands are numbers alone; a call, such as that for all sigma_n, is
+    one.
+    """
+    if scene.has("inertia"):
+        forces = derive_dynamics(scene)
+        outward, weights = motion_steps.motion_step(forces), recursion.IMPLICIT
+    else:
+        scene = scene.at_rest
+        forces = derive_statics(scene)
+        outward, weights = recursion.pose_step(forces), recursion.STATIC
+    inward = [recursion.residual_step(forces), recursion.eliminate_step(forces, weights)]
+    steps = [outward, *inward, recursion.substitute_step(forces, weights)]
+    tree = ast.parse(compose("Counted.", forces, [], steps, ()))
+    names = {step.name for step in steps}
+    bodies = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name in names]
+    return sum(map(count, bodies))
+
+
+def count(tree: ast.AST) -> int:
+    """Operations in Python text: arithmetic on more than numbers, and calls."""
+    return sum(
+        isinstance(node, ast.Call) or (isinstance(node, ast.BinOp | ast.UnaryOp) and _has_name(node))
+        for node in ast.walk(tree)
+    )
+
+
+def _has_name(node: ast.AST) -> bool:
+    return any(isinstance(part, ast.Name) for part in ast.walk(node))
+
+
+def added_by_each(scene: Scene) -> dict[str, int | None]:
+    """Operations per segment that the scene would do without, were it not for an effect, by its name.
+
+    None for inertia, without which nothing moves, and for what others cannot do without.
+    """
+    whole = operations(scene)
+    return {effect.name: _added(scene, effect.name, whole) for effect in scene.effects}
+
+
+def _added(scene: Scene, name: str, whole: int) -> int | None:
+    if name == "inertia":
+        return None
+    try:
+        return whole - operations(scene.without(name))
+    except InputError:
+        return None

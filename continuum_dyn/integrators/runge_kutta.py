@@ -1,0 +1,366 @@
+"""Steps of a diagonally implicit Runge-Kutta method on the chain: plain Python, composed into kernels.
+
+Because q' = u, the acceleration w is the only unknown of a stage: with g = gamma h,
+
+    u = U + g w,   q = Q + g u,   r(q, u, w) = 0,   Newton matrix M + g C + g^2 K
+
+U and Q are known from the stages before. The matrix leaves out the velocity's own terms, so that it is the
+chain's; Newton's method then takes about two iterations. Errors are metres: the largest displacement of a
+disk under the error of the coordinates and, in an explicit method, under that of the rates for as long as it
+may last. At the edge of their stability explicit steps keep every stiff mode shivering within the tolerance:
+by a displacement too small to see, with rates and a dissipation beyond those of the motion.
+
+Arguments travel in groups:
+
+- ``arm``: pieces of the inputs' profiles, segment table, disk table;
+- ``method``: a, c, error weights, predictor of the tableau, and ``lasting``, the time (s) for which an error
+  of the rates is taken to last;
+- ``stages``: q, u, w, shape (stages, n, dofs);
+- ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,
+  its powers, in and dissipated, those at Lobatto's two inner points of that step and at its end.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from continuum_dyn.equations.motion_passes import acceleration, displacement, inputs_at, motion_sweep
+    from continuum_dyn.generated import CHAIN_COLUMNS, ELIMINATE_START, INPUTS
+    from statics.chain import clearance_sweep, eliminate_sweep, residual_sweep, substitute_sweep
+
+    Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+    Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]
+    Moving = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+MOST_ITERATIONS = 8
+"""Newton iterations after which a stage is given up."""
+STAGE_PART = 0.02
+"""Part of the tolerance that a stage's equations may be off by."""
+ROOT_5 = math.sqrt(5.0)
+SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
+
+GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
+
+
+def prepare(
+    s: int,
+    h: float,
+    y: np.ndarray,
+    a: np.ndarray,
+    predictor: np.ndarray,
+    stage_u: np.ndarray,
+    stage_w: np.ndarray,
+    known_q: np.ndarray,
+    known_u: np.ndarray,
+) -> None:
+    """What stage s knows from the stages before it, and the prediction of its w; rows of all coordinates.
+
+    One stage after the other, so that the inner loops run on vectors.
+    """
+    size = known_q.size
+    for m in range(size):
+        known_q[m], known_u[m], stage_w[s, m] = y[m], y[size + m], 0.0
+    for j in range(s):
+        part, weight = h * a[s, j], predictor[s, j]
+        if part != 0.0:
+            for m in range(size):
+                known_q[m] += part * stage_u[j, m]
+                known_u[m] += part * stage_w[j, m]
+        if weight != 0.0:
+            for m in range(size):
+                stage_w[s, m] += weight * stage_w[j, m]
+
+
+def solve_stage(
+    known_q: np.ndarray,
+    known_u: np.ndarray,
+    g: float,
+    allowed: float,
+    rate: float,
+    stage: "Moving",
+    inputs: np.ndarray,
+    arm: "Moving",
+    chain: np.ndarray,
+    work: np.ndarray,
+) -> tuple[int, float]:
+    """Newton's method for one ``stage``: its q, u and w (n, dofs), w from its predictor; ``allowed`` in m.
+
+    Returns the iterations (negative if it did not converge), and the rate of convergence.
+    """
+    q, u, w = stage
+    _, segments, disks = arm
+    residual, descent, change = work[0], work[1], work[2]
+    start = (g, g * g, *ELIMINATE_START[2:])
+    last, iterations = 0.0, 0
+    while True:
+        for i in range(q.shape[0]):
+            for k in range(q.shape[1]):
+                u[i, k] = known_u[i, k] + g * w[i, k]
+                q[i, k] = known_q[i, k] + g * u[i, k]
+        if iterations < 0 or (iterations > 0 and last * rate <= allowed * (1.0 - rate)):
+            return iterations, rate
+        if iterations == MOST_ITERATIONS:
+            return -iterations, rate
+        motion_sweep(q, u, w, inputs, segments, disks, chain)
+        residual_sweep(disks, chain, residual)
+        eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
+        substitute_sweep(chain, descent, change)
+        size = g * g * displacement(chain, change)
+        for i in range(q.shape[0]):
+            for k in range(q.shape[1]):
+                w[i, k] += change[i, k]
+        if iterations > 0:
+            rate = max(0.3 * rate, size / max(last, 1e-300))
+        last = size
+        iterations += 1
+        if rate >= 0.9 or not math.isfinite(size):
+            return -iterations, 0.5
+
+
+def step_once(
+    t: float,
+    h: float,
+    y: np.ndarray,
+    rate: float,
+    method: "Method",
+    tolerance: float,
+    arm: "Moving",
+    chain: np.ndarray,
+    work: np.ndarray,
+    stages: "Moving",
+    next_y: np.ndarray,
+) -> tuple[float, float, int]:
+    """All stages of one step from (t, y), whose first acceleration is known.
+
+    The new state goes into ``next_y`` (without the integrals of the power); its acceleration is the last
+    stage's. Returns the error (m; infinite if a stage did not converge), the rate of convergence, and the
+    Newton iterations.
+    """
+    a, c, error_weights, predictor, lasting = method
+    stage_q, stage_u, stage_w = stages
+    count, n, dofs = stage_w.shape
+    size = n * dofs
+    stage_q[0] = y[:size].reshape((n, dofs))
+    stage_u[0] = y[size : 2 * size].reshape((n, dofs))
+    inputs = np.empty(INPUTS)
+    known_q, known_u, error = work[3].ravel(), work[4].ravel(), work[5].ravel()
+    flat_u, flat_w = stage_u.reshape((count, size)), stage_w.reshape((count, size))
+    iterations = 0
+    for s in range(1, count):
+        prepare(s, h, y, a, predictor, flat_u, flat_w, known_q, known_u)
+        inputs_at(t + c[s] * h, arm[0], inputs)
+        took, rate = solve_stage(
+            work[3],
+            work[4],
+            a[s, s] * h,
+            STAGE_PART * tolerance,
+            rate,
+            (stage_q[s], stage_u[s], stage_w[s]),
+            inputs,
+            arm,
+            chain,
+            work,
+        )
+        iterations += abs(took)
+        if took < 0:
+            return math.inf, rate, iterations
+    last = count - 1
+    next_y[:size] = stage_q[last].ravel()
+    next_y[size : 2 * size] = stage_u[last].ravel()
+    for m in range(size):
+        error[m] = 0.0
+        for s in range(count):
+            error[m] += h * error_weights[s] * (flat_u[s, m] + lasting * flat_w[s, m])
+    return displacement(chain, work[5]), rate, iterations
+
+
+def shrinkage(part: float, order: int) -> float:
+    """Factor for a step whose error was ``part`` times the tolerance, too much or not finite."""
+    return max(MOST_SHRINK, SAFETY * part ** (-1.0 / order)) if math.isfinite(part) else 0.25
+
+
+def growth(part: float, last_part: float, order: int) -> float:
+    """Factor for the step after one whose error was ``part`` of the tolerance, after one of ``last_part``.
+
+    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds.
+    """
+    factor = SAFETY * part ** (-0.7 / order) * last_part ** (0.3 / order)
+    return min(MOST_GROWTH, max(MOST_SHRINK, factor))
+
+
+def advance(
+    t_bound: float,
+    h: float,
+    rate: float,
+    records: "Records",
+    method: "Method",
+    order: int,
+    tolerance: float,
+    arm: "Moving",
+) -> tuple[int, int, float, float, int, int]:
+    """Steps from row 0 of the records until they are full or ``t_bound`` (s) is reached.
+
+    A step that leaves the arm at a geometric limit or not finite is taken only as the first of its batch,
+    so that the ones before it are not lost with it. Returns how it ended, the steps taken, the next step's
+    size, the rate of convergence, the rejected steps, and the Newton iterations.
+    """
+    times, states, accelerations, _ = records
+    count = len(method[1])
+    _, n, dofs = accelerations.shape
+    shape = (count, n, dofs)
+    stages = (np.empty(shape), np.empty(shape), np.empty(shape))
+    work, chain = np.empty((6, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    taken, rejected, iterations = 0, 0, 0
+    last_part = 1.0
+    while taken < len(times) - 1:
+        t = times[taken]
+        left = t_bound - t
+        if left <= 0.0:
+            return FINISHED, taken, h, rate, rejected, iterations
+        if h < 16.0 * 2.2e-16 * abs(t) or h < 1e-300:
+            return TOO_SMALL, taken, h, rate, rejected, iterations
+        reaches = h >= 0.99 * left
+        step = left if reaches else min(h, 0.5 * left)
+        stages[2][0] = accelerations[taken]
+        error, rate, took = step_once(
+            t,
+            step,
+            states[taken],
+            rate,
+            method,
+            tolerance,
+            arm,
+            chain,
+            work,
+            stages,
+            states[taken + 1],
+        )
+        iterations += took
+        if not error <= tolerance:
+            rejected += 1
+            h = step * shrinkage(error / tolerance, order)
+            continue
+        part = max(error / tolerance, 1e-6)
+        factor, last_part = growth(part, last_part, order), part
+        h = max(h, step) if reaches and factor > 1.0 else step * factor
+        states[taken + 1, 2 * n * dofs :] = 0.0
+        bad = clearance_sweep(stages[0][count - 1], arm[1]) <= 0.0 or not finite(states[taken + 1])
+        if bad and taken > 0:
+            return NO_ROOM, taken, step, rate, rejected, iterations
+        taken += 1
+        times[taken] = t_bound if reaches else t + step
+        accelerations[taken] = stages[2][count - 1]
+        add_work(taken, records, arm, chain, work)
+        if bad:
+            return NO_ROOM, taken, h, rate, rejected, iterations
+    return (FINISHED if times[taken] >= t_bound else GOING_ON), taken, h, rate, rejected, iterations
+
+
+def finite(row: np.ndarray) -> bool:
+    """Whether every number of a row is finite; makes no array of its own."""
+    good = True
+    for value in row:
+        good = good and math.isfinite(value)
+    return good
+
+
+def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, work: np.ndarray) -> None:
+    """The integrals of the powers at the end of step ``row``, by Lobatto's rule on the step's interpolant.
+
+    The stages would do for that in principle; but damping multiplies the stages' own, lower order in
+    stiff coordinates, which the ends of the steps do not have.
+    """
+    times, states, accelerations, powers = records
+    _, n, dofs = accelerations.shape
+    size = n * dofs
+    pieces, segments, disks = arm
+    inputs, between = np.empty(INPUTS), np.empty((3, states.shape[1]))
+    h = times[row] - times[row - 1]
+    middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / ROOT_5
+    at = np.array([middle - apart, middle + apart, times[row]])
+    interpolate(at[:2], records, row - 1, between)
+    between[2] = states[row]
+    for m in range(3):
+        inputs_at(at[m], pieces, inputs)
+        q, u = between[m, :size].reshape((n, dofs)), between[m, size : 2 * size].reshape((n, dofs))
+        power_in, dissipated = motion_sweep(q, u, work[0], inputs, segments, disks, chain)
+        powers[row, m, 0], powers[row, m, 1] = power_in, dissipated
+    for part in range(2):
+        start, first, second, end = (
+            powers[row - 1, 2, part],
+            powers[row, 0, part],
+            powers[row, 1, part],
+            powers[row, 2, part],
+        )
+        gained = h / 12.0 * (start + 5.0 * (first + second) + end)
+        states[row, 2 * size + part] = states[row - 1, 2 * size + part] + gained
+
+
+def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") -> float:
+    """Row 0 of the records: a time, a state, its acceleration and its powers.
+
+    Returns the largest acceleration of a disk that comes of the coordinates' own, m/s^2.
+    """
+    times, states, accelerations, powers = records
+    pieces, segments, disks = arm
+    _, n, dofs = accelerations.shape
+    inputs, chain = np.empty(INPUTS), np.empty((n, CHAIN_COLUMNS))
+    inputs_at(t, pieces, inputs)
+    times[0], states[0] = t, y
+    q, u = states[0, : n * dofs].reshape((n, dofs)), states[0, n * dofs : 2 * n * dofs].reshape((n, dofs))
+    powers[0, 2] = acceleration(q, u, inputs, segments, disks, chain, accelerations[0])
+    return displacement(chain, accelerations[0])
+
+
+def interpolate(at: np.ndarray, records: "Records", row: int, found: np.ndarray) -> None:
+    """States at the increasing times ``at``, from the step after ``row`` on, into ``found``, (len(at), size).
+
+    Quintic Hermite for coordinates, from their rates and accelerations at both ends of a step; its
+    derivative for rates; the integrals of the powers are those of the cubics through their four values.
+    """
+    times, states, accelerations, powers = records
+    _, n, dofs = accelerations.shape
+    size = n * dofs
+    for m in range(len(at)):
+        while row < len(times) - 2 and at[m] > times[row + 1]:
+            row += 1
+        h = times[row + 1] - times[row]
+        s = (at[m] - times[row]) / h
+        s2, s3 = s * s, s * s * s
+        rest = 1.0 - s
+        end = s3 * (10.0 - 15.0 * s + 6.0 * s2)
+        start_rate, end_rate = s * rest * rest * rest * (1.0 + 3.0 * s), s3 * rest * (3.0 * s - 4.0)
+        start_push, end_push = 0.5 * s2 * rest * rest * rest, 0.5 * s3 * rest * rest
+        end_slope = 30.0 * s2 * rest * rest
+        start_rate_slope = 1.0 - 18.0 * s2 + 32.0 * s3 - 15.0 * s2 * s2
+        end_rate_slope = -12.0 * s2 + 28.0 * s3 - 15.0 * s2 * s2
+        start_push_slope = s - 4.5 * s2 + 6.0 * s3 - 2.5 * s2 * s2
+        end_push_slope = 1.5 * s2 - 4.0 * s3 + 2.5 * s2 * s2
+        w0, w1 = accelerations[row].ravel(), accelerations[row + 1].ravel()
+        at_start, at_end, between = states[row], states[row + 1], found[m]
+        for j in range(size):
+            change = at_end[j] - at_start[j]
+            u0, u1 = at_start[size + j], at_end[size + j]
+            between[j] = (
+                at_start[j]
+                + end * change
+                + h * (start_rate * u0 + end_rate * u1 + h * (start_push * w0[j] + end_push * w1[j]))
+            )
+            between[size + j] = (
+                end_slope * change / h
+                + start_rate_slope * u0
+                + end_rate_slope * u1
+                + h * (start_push_slope * w0[j] + end_push_slope * w1[j])
+            )
+        for part in range(2):
+            y0, y1 = states[row, 2 * size + part], states[row + 1, 2 * size + part]
+            power0, power1 = powers[row, 2, part], powers[row + 1, 2, part]
+            apart = ROOT_5 * (powers[row + 1, 0, part] - powers[row + 1, 1, part])
+            found[m, 2 * size + part] = (
+                y0
+                + s2 * (3.0 - 2.0 * s) * (y1 - y0)
+                + h * s * rest * (rest * power0 - s * power1)
+                + 1.25 * h * s2 * rest * rest * (apart + power1 - power0)
+            )

@@ -1,0 +1,355 @@
+"""Newton's method on the chain that ends in a stable equilibrium.
+
+The potential energy must fall (Armijo); pivot blocks are made positive as they come, so that every step
+descends. At a saddle the search stops, so that it can be reported, and goes on along the direction of negative
+curvature that the elimination knows. A trial beyond a geometric limit counts as infinitely high.
+"""
+
+import math
+
+import numpy as np
+
+from statics.kernels.calling import run
+from statics.kernels.compiled import compiled
+from statics.kernels.slots import (
+    CLEARANCE,
+    ELASTIC_ENERGY,
+    GRAVITY_ENERGY,
+    KEEP_SIGN,
+    NEGATIVE_PIVOTS,
+    POTENTIAL,
+    POTENTIAL_SCALE,
+    SCALARS,
+)
+from statics.passes.rest_passes import RestPasses
+from statics.passes.search import (
+    AT_LIMIT,
+    AT_REST,
+    FALLING,
+    LARGEST_TURN,
+    LIMIT,
+    NOT_FOUND,
+    STABLE,
+    TOWARDS_LIMIT,
+    UNSTABLE,
+    advance,
+    clear,
+    copy,
+    largest,
+    measure,
+    pose_pass,
+)
+
+ROUNDING = 1e-11
+"""Smallest predicted fall of the potential, over its scale, that can be seen in it."""
+FAR_FROM_REST = 1e-6
+"""Newton step (rad, or elongation over L0) above which one from where all forces balance goes elsewhere: the
+matrix is singular there."""
+
+
+@compiled
+def eliminate(
+    passes: RestPasses,
+    keep_sign: float,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    residual: np.ndarray,
+    descent: np.ndarray,
+    pivots: np.ndarray,
+    scalars: np.ndarray,
+) -> int:
+    """Eliminate every segment from H dq = -residual; returns the number of negative pivots.
+
+    With ``keep_sign`` 1 pivots stay as they are, and those are the negative eigenvalues of the matrix; with 0
+    they are made positive.
+    """
+    scalars[KEEP_SIGN] = keep_sign
+    run(passes.eliminate, residual.shape[0], scalars, segments, disks, chain, residual, descent, pivots)
+    return int(scalars[NEGATIVE_PIVOTS])
+
+
+@compiled
+def descend(
+    passes: RestPasses,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    residual: np.ndarray,
+    descent: np.ndarray,
+    pivots: np.ndarray,
+    scalars: np.ndarray,
+) -> int:
+    """Eliminate so that the step descends, exactly where it does so by itself; returns the negative pivots.
+
+    Cables of given length may hold what is unstable without them: then pivots are negative, the matrix not.
+    """
+    negative = eliminate(passes, 0.0, segments, disks, chain, residual, descent, pivots, scalars)
+    if passes.lengths != 0 and negative > 0:
+        if eliminate(passes, 1.0, segments, disks, chain, residual, descent, pivots, scalars) == 0:
+            return 0
+        eliminate(passes, 0.0, segments, disks, chain, residual, descent, pivots, scalars)
+    return negative
+
+
+@compiled
+def inner(first: np.ndarray, second: np.ndarray) -> float:
+    """Scalar product of two arrays of one row for each segment."""
+    total = 0.0
+    for i in range(first.shape[0]):
+        for k in range(first.shape[1]):
+            total += first[i, k] * second[i, k]
+    return total
+
+
+@compiled
+def saddle_direction(
+    passes: RestPasses,
+    unit: float,
+    chain: np.ndarray,
+    pivots: np.ndarray,
+    descent: np.ndarray,
+    change: np.ndarray,
+    scalars: np.ndarray,
+) -> float:
+    """Into ``change`` a direction of negative curvature, at most 0.1 rad; returns its curvature.
+
+    The negative pivot nearest to the tip gives its own eigenvector; substitution gives what follows.
+    """
+    clear(descent)
+    curvature = 0.0
+    for i in range(descent.shape[0] - 1, -1, -1):
+        if descent.shape[1] == 1:
+            if pivots[i, 0] < 0.0:
+                descent[i, 0], curvature = 1.0, pivots[i, 0]
+                break
+        else:
+            a, b, c = pivots[i, 0], pivots[i, 1] * unit, pivots[i, 2] * unit * unit
+            low = 0.5 * (a + c) - math.hypot(0.5 * (a - c), b)
+            if low < 0.0:
+                turn = 0.5 * math.atan2(2.0 * b, a - c)
+                descent[i, 0], descent[i, 1] = -math.sin(turn), math.cos(turn) * unit
+                curvature = low
+                break
+    run(passes.substitute, change.shape[0], scalars, chain, descent, change)
+    shrink = 0.1 / max(measure(change, unit)[1], 1e-30)
+    for i in range(change.shape[0]):
+        for k in range(change.shape[1]):
+            change[i, k] *= shrink
+    return curvature * shrink * shrink
+
+
+@compiled
+def shorten(
+    passes: RestPasses,
+    q: np.ndarray,
+    change: np.ndarray,
+    factor: float,
+    enough: float,
+    slope: float,
+    curvature: float,
+    clearance: float,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    trial: np.ndarray,
+    scalars: np.ndarray,
+) -> float:
+    """Halve the step until the potential falls enough (Armijo) and no geometric limit comes too close.
+
+    ``enough`` is the potential to fall from, with its slope and curvature along ``change``; of the
+    ``clearance`` at q a part must be left. Returns the factor, 0 if there is none; ``trial`` is the accepted q,
+    ``scalars`` hold its potential and clearance.
+    """
+    for _ in range(60):
+        advance(q, factor, change, trial)
+        pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
+        fall = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
+        if scalars[CLEARANCE] > TOWARDS_LIMIT * clearance and scalars[POTENTIAL] <= enough + fall:
+            return factor
+        factor *= 0.5
+    return 0.0
+
+
+@compiled
+def lengthen(
+    passes: RestPasses,
+    q: np.ndarray,
+    change: np.ndarray,
+    factor: float,
+    longest: float,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    trial: np.ndarray,
+    scalars: np.ndarray,
+) -> None:
+    """Double an accepted step while that lowers the potential: an indefinite matrix says little of length."""
+    potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
+    while 2.0 * factor <= longest:
+        advance(q, 2.0 * factor, change, trial)
+        pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
+        if scalars[CLEARANCE] <= TOWARDS_LIMIT * clearance or scalars[POTENTIAL] >= potential:
+            break
+        factor, potential, clearance = 2.0 * factor, scalars[POTENTIAL], scalars[CLEARANCE]
+    advance(q, factor, change, trial)
+    pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
+
+
+@compiled
+def leave_saddle(
+    passes: RestPasses,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    unit: float,
+) -> bool:
+    """Move ``q`` off an unstable equilibrium, down along a direction of negative curvature.
+
+    Returns whether there is a way down within the geometric limits.
+    """
+    n, dofs = q.shape
+    chain, pivots, scalars = np.empty((n, passes.chain_columns)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
+    residual, descent, change, trial = (
+        np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
+    )
+    pose_pass(passes, q, inputs, segments, disks, chain, scalars)
+    potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
+    run(passes.residual, n, scalars, disks, chain, residual)
+    descend(passes, segments, disks, chain, residual, descent, pivots, scalars)
+    curvature = saddle_direction(passes, unit, chain, pivots, descent, change, scalars)
+    slope = inner(residual, change)
+    if slope > 0.0:
+        advance(change, -2.0, change, change)
+        slope = -slope
+    factor = shorten(
+        passes, q, change, 1.0, potential, slope, curvature, clearance,
+        inputs, segments, disks, chain, trial, scalars,
+    )
+    if factor == 0.0:
+        return False
+    lengthen(
+        passes, q, change, factor, 10.0 * LARGEST_TURN, inputs, segments, disks, chain, trial, scalars
+    )
+    copy(trial, q)
+    return True
+
+
+@compiled
+def find_stable(
+    passes: RestPasses,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    unit: float,
+    most: int,
+) -> tuple[int, int]:
+    """Move ``q``, shape (n, dofs), to an equilibrium; ``unit`` is the length elongations compare with.
+
+    Returns the outcome (STABLE, UNSTABLE, LIMIT, NOT_FOUND) and the iterations (at most ``most``). From an
+    unstable one ``leave_saddle`` knows the way on.
+    """
+    n, dofs = q.shape
+    chain, pivots, scalars = np.empty((n, passes.chain_columns)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
+    residual, descent, change, trial = (
+        np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
+    )
+    coupled = passes.lengths != 0
+    pose_pass(passes, q, inputs, segments, disks, chain, scalars)
+    single = math.inf
+    for iteration in range(1, most + 1):
+        potential, scale, clearance = scalars[POTENTIAL], scalars[POTENTIAL_SCALE], scalars[CLEARANCE]
+        run(passes.residual, n, scalars, disks, chain, residual)
+        negative = descend(passes, segments, disks, chain, residual, descent, pivots, scalars)
+        run(passes.substitute, n, scalars, chain, descent, change)
+        last = single
+        single, turn = measure(change, unit)
+        if single < AT_REST and not (coupled and single < FALLING * last):  # cables may catch in a small step
+            if negative == 0:
+                advance(q, 1.0, change, q)
+                return STABLE, iteration
+            eliminate(passes, 1.0, segments, disks, chain, residual, descent, pivots, scalars)
+            run(passes.substitute, n, scalars, chain, descent, change)
+            if measure(change, unit)[0] < FAR_FROM_REST:
+                advance(q, 1.0, change, q)
+            return UNSTABLE, iteration
+        slope, enough = inner(residual, change), potential
+        if slope > -ROUNDING * scale:
+            enough = potential + scale  # the fall is below rounding: only the limits are checked
+        longest = LARGEST_TURN / max(turn, 1e-30)
+        factor = shorten(
+            passes, q, change, min(1.0, longest), enough, slope, 0.0, clearance,
+            inputs, segments, disks, chain, trial, scalars,
+        )
+        if factor == 0.0:
+            return NOT_FOUND, iteration
+        if negative > 0:
+            lengthen(
+                passes, q, change, factor, max(longest, 1.0), inputs, segments, disks, chain, trial, scalars
+            )
+        copy(trial, q)
+        if scalars[CLEARANCE] < AT_LIMIT:
+            return LIMIT, iteration
+    return NOT_FOUND, most
+
+
+@compiled
+def examine_stability(
+    passes: RestPasses,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    pose: np.ndarray,
+) -> tuple[float, float, float, int]:
+    """Poses of the disks into ``pose``, shape (n, 3).
+
+    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and the number of negative
+    eigenvalues of the potential energy's Hessian: at an equilibrium, its unstable directions.
+    """
+    n, dofs = q.shape
+    chain, pivots, scalars = np.empty((n, passes.chain_columns)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
+    residual, descent = np.empty((n, dofs)), np.empty((n, dofs))
+    pose_pass(passes, q, inputs, segments, disks, chain, scalars)
+    run(passes.residual, n, scalars, disks, chain, residual)
+    negative = eliminate(passes, 1.0, segments, disks, chain, residual, descent, pivots, scalars)
+    run(passes.observe, n, scalars, q, inputs, segments, disks, chain, pose)
+    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative
+
+
+@compiled
+def unbalanced(
+    passes: RestPasses,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    residual: np.ndarray,
+) -> float:
+    """Unbalanced generalized forces into ``residual``, shape of q; returns the clearance."""
+    scalars = np.empty(SCALARS)
+    pose_pass(passes, q, inputs, segments, disks, chain, scalars)
+    run(passes.residual, q.shape[0], scalars, disks, chain, residual)
+    return scalars[CLEARANCE]
+
+
+@compiled
+def solve_exactly(
+    passes: RestPasses,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    right: np.ndarray,
+    change: np.ndarray,
+) -> int:
+    """Set change to -H^-1 right, for the q that ``chain`` is of; returns H's negative eigenvalues."""
+    n, dofs = right.shape
+    descent, pivots, scalars = np.empty((n, dofs)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
+    negative = eliminate(passes, 1.0, segments, disks, chain, right, descent, pivots, scalars)
+    run(passes.substitute, n, scalars, chain, descent, change)
+    return negative

@@ -1,0 +1,29 @@
+"""The passes of a scene at rest, as compiled code takes them."""
+
+from typing import NamedTuple
+
+from statics.kernels.loading import Family
+
+
+class RestPasses(NamedTuple):
+    """Addresses of the passes, zero where the scene has none, and sizes of the arrays.
+
+    ``lengths`` and ``beyond`` measure coupled cables; ``eliminate_held`` keeps their tensions as they are.
+    """
+
+    lengths: int
+    beyond: int
+    pose: int
+    residual: int
+    eliminate: int
+    substitute: int
+    observe: int
+    eliminate_held: int
+    inputs: int
+    chain_columns: int
+    pivot_columns: int
+
+
+REST = Family(
+    "rest", "Statics of a planar cable-driven arm.", "statics.derivation.at_rest:derive_rest", RestPasses
+)

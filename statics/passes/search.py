@@ -1,0 +1,90 @@
+"""Common parts of both searches for an equilibrium: outcomes, limits, steps in coordinates of unlike units."""
+
+import numpy as np
+
+from statics.kernels.calling import run
+from statics.kernels.compiled import compiled
+from statics.passes.rest_passes import RestPasses
+
+STABLE, UNSTABLE, LIMIT, NOT_FOUND, BALANCED = 0, 1, 2, 3, 4
+"""Outcomes of a search; BALANCED is an equilibrium of which it is not known whether it is stable."""
+UNKNOWN = -1
+"""Number of an equilibrium's unstable directions where it is not known."""
+
+AT_REST = 1e-8
+"""Largest last Newton step (rad, or elongation over L0): its square is below rounding."""
+FALLING = 0.9
+"""Largest ratio of a residual or a step to the last one while it still falls; above, it is rounding."""
+AT_LIMIT = 1e-6
+"""Largest clearance (over L0) at which an arm that still descends has reached its geometric limit."""
+TOWARDS_LIMIT = 0.1
+"""Smallest part of the clearance that a step must leave: else a step that is too long looks like a limit."""
+LARGEST_TURN = 1.0
+"""Largest turn of any disk in one step, rad."""
+
+
+@compiled
+def measure(change: np.ndarray, rest_length: float) -> tuple[float, float]:
+    """Largest single change (rad, or elongation over L0), and largest change of any disk's angle."""
+    single, angle, turn = 0.0, 0.0, 0.0
+    for i in range(change.shape[0]):
+        angle += change[i, 0]
+        turn = max(turn, abs(angle))
+        single = max(single, abs(change[i, 0]))
+        if change.shape[1] == 2:
+            single = max(single, abs(change[i, 1]) / rest_length)
+    return single, max(single, turn)
+
+
+@compiled
+def advance(q: np.ndarray, factor: float, change: np.ndarray, trial: np.ndarray) -> None:
+    """Set trial to q + factor * change."""
+    for i in range(q.shape[0]):
+        for k in range(q.shape[1]):
+            trial[i, k] = q[i, k] + factor * change[i, k]
+
+
+@compiled
+def clear(values: np.ndarray) -> None:
+    """Set every number of an array, shape (n, columns), to zero."""
+    for i in range(values.shape[0]):
+        for k in range(values.shape[1]):
+            values[i, k] = 0.0
+
+
+@compiled
+def copy(source: np.ndarray, target: np.ndarray) -> None:
+    """Set every number of one array, shape (n, columns), to that of another."""
+    for i in range(source.shape[0]):
+        for k in range(source.shape[1]):
+            target[i, k] = source[i, k]
+
+
+@compiled
+def largest(values: np.ndarray) -> float:
+    """Largest absolute value of an array, shape (n, columns); not a number if one is not."""
+    found = 0.0
+    for i in range(values.shape[0]):
+        for k in range(values.shape[1]):
+            size = abs(values[i, k])
+            if not size <= found:
+                found = size
+    return found
+
+
+@compiled
+def pose_pass(
+    passes: RestPasses,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    chain: np.ndarray,
+    scalars: np.ndarray,
+) -> None:
+    """Outward, at rest: what the inward passes need, lengths of coupled cables first."""
+    n = q.shape[0]
+    if passes.lengths != 0:
+        run(passes.lengths, n, scalars, q, inputs, segments, chain)
+        run(passes.beyond, n, scalars, chain)
+    run(passes.pose, n, scalars, q, inputs, segments, disks, chain)
