@@ -7,8 +7,8 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from continuum_dyn.study import Method
-from statics.support.checked import STRICT, NonNegative, Positive
 from statics.outcome import Outcome
+from statics.support.checked import STRICT, NonNegative, Positive
 
 
 @dataclass(frozen=True, config=STRICT)

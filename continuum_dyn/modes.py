@@ -10,7 +10,6 @@ from scipy.sparse.linalg import LinearOperator, eigs
 from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.profiles import Constant, Span, spans
 from continuum_dyn.study import Scenario
-from statics.kernels import loading as codegen
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.outcome import Outcome
@@ -39,7 +38,7 @@ def rates(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[float, float]:
 
 def linearized(dynamics: Dynamics, y: np.ndarray, span: Span) -> np.ndarray:
     """d(rate)/dy. Raises ``InputError`` where it is beyond floating point."""
-    matrix = dynamics.jacobian(span.start, y, span)
+    matrix = dynamics.jacobian(span.start, y, span, once=True)
     if not np.isfinite(matrix).all():
         raise InputError(
             "the equations of motion overflow at the start: numbers of the scene are too far apart. "
@@ -151,20 +150,16 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
 
 
 def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None:
-    """Least and largest rate (1/s) about rest without an effect; None where there is no such rest.
-
-    The kernels run as plain Python: a single matrix is not worth a compilation, unless the arm has many
-    more than ``FEW_COORDINATES``.
-    """
+    """Least and largest rate (1/s) about rest without an effect; None where there is no such rest."""
     try:
         without = scenario.without(effect)
         with np.errstate(all="ignore"):
-            rest = StaticSolver(without.scene, codegen.load_interpreted).solve(without.initial_inputs)
+            rest = StaticSolver(without.scene).solve(without.initial_inputs)
             if rest.outcome is not Outcome.COMPLETED:
                 return None
-            dynamics = Dynamics(without.scene, codegen.load_interpreted)
+            dynamics = Dynamics(without.scene)
             return rates(dynamics, dynamics.state(rest.coordinates), still(without.initial_inputs))
-    except (InputError, ArithmeticError, ValueError):  # Python raises where compiled code goes on with nan
+    except (InputError, ArithmeticError, ValueError):  # numbers without a rest may overflow
         return None
 
 

@@ -13,8 +13,8 @@ from typing import Any, get_origin
 
 from continuum_dyn.scenario_file import ScenarioFile
 from continuum_dyn.toml_text import toml_text
-from statics.support.checked import LONGEST_LINE
 from statics.errors import InputError, did_you_mean
+from statics.support.checked import LONGEST_LINE
 
 LISTS = [name for name, field in ScenarioFile.model_fields.items() if get_origin(field.annotation) is list]
 """Lists of tables, which a file may leave out."""

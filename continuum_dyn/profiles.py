@@ -18,8 +18,8 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from statics.support.checked import STRICT, NonNegative, Positive
 from statics.errors import InputError
+from statics.support.checked import STRICT, NonNegative, Positive
 
 TIME_RESOLUTION = 1e-300
 """Rows of a table closer than this (s) would have slopes beyond floating point."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from continuum_dyn.accuracy import to_accuracy
 from continuum_dyn.begun import Begun
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.energy_balance import broken_ledger
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
@@ -27,9 +27,9 @@ from continuum_dyn.trajectory import Trajectory
 from statics.arc_length import MOST_STEPS, follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver
-from statics.support.interruption import Interruption, allowed, held
 from statics.outcome import Outcome
 from statics.ramp import limit_on_the_way, ramp
+from statics.support.interruption import Interruption, allowed, held
 from statics.support.stages import stage
 
 TIME_PART = 0.25

@@ -11,10 +11,10 @@ from pydantic.dataclasses import dataclass
 from continuum_dyn.profiles import Constant, InPieces, Profile, lowest
 from continuum_dyn.smooth_motion import Rate, check_smooth
 from statics.arc_length import check_followable
-from statics.support.checked import STRICT, Positive
 from statics.effects import Effect
 from statics.errors import InputError
 from statics.scene import Scene
+from statics.support.checked import STRICT, Positive
 
 MAX_STORED = 20_000_000
 """Most segments times samples that a log may hold."""

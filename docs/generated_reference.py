@@ -11,8 +11,8 @@ import typer
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-import continuum_dyn.equations.dynamics
 import continuum_dyn.effects
+import continuum_dyn.equations.dynamics
 import continuum_dyn.modes
 import continuum_dyn.profiles
 import continuum_dyn.study

@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from statics.passes import newton, search
 from statics.equilibria import Critical, Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.outcome import Outcome
+from statics.passes import newton, search
 from statics.scene import Scene
 
 FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.05, 0.25, 1e-9

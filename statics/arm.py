@@ -24,9 +24,9 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from statics.support.checked import STRICT, NonNegative, Positive, Vector
 from statics.core_mass import AT_END, AT_POINT
 from statics.errors import InputError, did_you_mean
+from statics.support.checked import STRICT, NonNegative, Positive, Vector
 
 MAX_SEGMENTS = 10_000
 

@@ -13,11 +13,11 @@ import numpy as np
 from statics.arm import Arm
 from statics.effects.cable_friction import FAR, SLIP_PART
 from statics.effects.cables import Poses, cable_lengths
-from statics.outcome import Outcome
-from statics.scene import Scene
 from statics.kernels.loading import Loader, load
+from statics.outcome import Outcome
 from statics.passes import newton, pseudo_transient, search
 from statics.passes.rest_passes import REST
+from statics.scene import Scene
 
 MAX_ITERATIONS = 200
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)

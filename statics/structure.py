@@ -60,7 +60,9 @@ class Structure:
     def text(self) -> str:
         """The structure in full, for a hash: an effect by its name and by a hash of its source."""
         own = {field.name: getattr(self, field.name) for field in fields(self)}
-        own["effects"] = [(effect.name, effect.__qualname__, source_digest(effect)) for effect in self.effects]
+        own["effects"] = [
+            (effect.name, effect.__qualname__, source_digest(effect)) for effect in self.effects
+        ]
         return repr(own)
 
 

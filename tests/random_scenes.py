@@ -14,7 +14,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.effects import (
     Inertia,
     LinearDrag,
@@ -23,6 +22,7 @@ from continuum_dyn.effects import (
     QuadraticDrag,
     RotaryInertia,
 )
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.profiles import Span
 from statics import (
     Arm,

@@ -15,8 +15,8 @@ from conftest import MOTION, SCENARIOS
 from whole_arm import difference_matrix
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.effects import Inertia, MaterialDamping
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import whole_arm
+from continuum_dyn.equations.in_motion import RECIPE as MOTION
 from whole_arm import (
     bare_scene,
     difference_matrix,
@@ -20,13 +21,12 @@ from whole_arm import (
 )
 
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.equations.in_motion import RECIPE as MOTION
 from continuum_dyn.profiles import Span
 from statics import codegen, equilibria
 from statics.arm import Cable
+from statics.derivation.at_rest import RECIPE as STATICS
 from statics.equilibria import StaticSolver
 from statics.scene import Scene
-from statics.derivation.at_rest import RECIPE as STATICS
 
 SEEDS = range(10)
 TIME = 0.3

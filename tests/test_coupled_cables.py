@@ -8,8 +8,8 @@ import whole_arm
 from whole_arm import difference_matrix, directional, gradient, random_state, relative_error
 from whole_cables import WholeCables
 
-from continuum_dyn.equations import in_motion as motion_kernel
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
+from continuum_dyn.equations import in_motion as motion_kernel
 from statics import (
     Arm,
     Bending,

@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 from scipy.signal import argrelmax
 from whole_arm import difference_matrix, gradient, random_state, relative_error
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.effects import Inertia, LinearDrag, MassDamping, QuadraticDrag, RotaryInertia
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators.choice import check
 from continuum_dyn.profiles import Span
 from statics import Arm, Bending, Gravity, InputError, Scene

@@ -9,7 +9,6 @@ from conftest import UPPER
 from one_of_each import ONE_OF_EACH
 from whole_arm import random_state
 
-from continuum_dyn.equations import in_motion as motion_kernel
 from continuum_dyn.effects import (
     EFFECTS,
     LinearDrag,
@@ -17,6 +16,7 @@ from continuum_dyn.effects import (
     MaterialDamping,
     QuadraticDrag,
 )
+from continuum_dyn.equations import in_motion as motion_kernel
 from continuum_dyn.equations.virtual_power import derive_dynamics, partial_velocity
 from statics import (
     Arm,
@@ -30,10 +30,10 @@ from statics import (
     statics_kernel,
 )
 from statics.arm import CableKind
-from statics.effects import Effect
-from statics.quantities import QUANTITIES
 from statics.derivation.segment import DiskSymbols, SegmentSymbols
 from statics.derivation.virtual_work import collect, partial_displacement
+from statics.effects import Effect
+from statics.quantities import QUANTITIES
 
 ARM = Arm.preset("rone2012", cables=(replace(UPPER, friction=0.2),))
 WITHOUT_EFFECT: tuple[Effect, ...] = (

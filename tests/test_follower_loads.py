@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from whole_arm import difference_matrix, full_scene, random_state, relative_error, spanned_scene
 
 from continuum_dyn import implicit_kernel, load_scenario, motion_kernel, simulate
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.effects import Inertia, MaterialDamping
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import choose
 from continuum_dyn.profiles import spans
 from continuum_dyn.study import MotionStudy, Solver
@@ -30,8 +30,8 @@ from statics import (
     equilibrium,
     statics_kernel,
 )
-from statics.judges.exact_rod import exact_rod
 from statics.derivation.virtual_work import derive_statics
+from statics.judges.exact_rod import exact_rod
 
 FOLLOWERS = (DiskLoad(2, (0.5, -0.9), 0.01, follower=True), DiskLoad(1, (-0.7, 0.4), follower=True))
 

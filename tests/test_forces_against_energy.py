@@ -21,11 +21,11 @@ from whole_arm import (
 )
 
 from statics.arm import Cable
+from statics.derivation.segment import SegmentSymbols, symbol
+from statics.derivation.sigma import Sigma
 from statics.effects.cables import disk_loads
 from statics.equilibria import StaticSolver, equilibrium
 from statics.scene import Scene
-from statics.derivation.segment import SegmentSymbols, symbol
-from statics.derivation.sigma import Sigma
 
 SEEDS = range(10)
 SOFT = 2.1e10, 2.1e9

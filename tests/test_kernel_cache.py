@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 
 from continuum_dyn import load_scenario
 from continuum_dyn.cli import app
-from statics.kernels import loading as codegen
 from statics.errors import KernelCacheError
+from statics.kernels import loading as codegen
 from statics.kernels.kept_files import no_cache, read_sealed, write_sealed
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="owners, modes and mounts are those of POSIX")

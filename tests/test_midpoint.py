@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import whole_arm
 from conftest import SCENARIOS, motion, moving, rone2012
+from continuum_dyn.midpoint_kernel import RECIPE
 from scipy.integrate import solve_ivp
 from whole_arm import (
     bare_scene,
@@ -23,10 +24,9 @@ from whole_arm import (
 )
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, modes, simulate
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.effects import MaterialDamping
+from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import MidpointSolver
-from continuum_dyn.midpoint_kernel import RECIPE
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.profiles import Constant, Profile, Sine, Span, Step, spans
 from continuum_dyn.record import write_log

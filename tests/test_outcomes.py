@@ -10,8 +10,8 @@ import pytest
 from conftest import ANY_METHOD, MOTION, moving, rone2012
 
 from continuum_dyn import Run, Scenario, simulate
-from continuum_dyn.equations.dynamics import Dynamics, Observation
 from continuum_dyn.effects import MaterialDamping
+from continuum_dyn.equations.dynamics import Dynamics, Observation
 from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.profiles import Constant, Profile, Span, Step
 from continuum_dyn.study import Method, MotionStudy, RampStudy, Solver, StepResponseStudy

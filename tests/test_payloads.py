@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from whole_arm import difference_matrix, full_scene, gradient, random_state, relative_error, spanned_scene
 
 from continuum_dyn import Scenario, midpoint_kernel, motion_kernel, simulate
-from continuum_dyn.equations.dynamics import LEDGER
 from continuum_dyn.effects import MassDamping
+from continuum_dyn.equations.dynamics import LEDGER
 from continuum_dyn.profiles import Step
 from continuum_dyn.study import MotionStudy, Solver, StepResponseStudy
 from statics import Arm, Bending, Gravity, InputError, Outcome, Payload, Scene, codegen, equilibrium

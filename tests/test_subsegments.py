@@ -15,8 +15,8 @@ from continuum_dyn.mesh import between, extrapolated, to_mesh
 from continuum_dyn.profiles import Sine, Step
 from continuum_dyn.study import Accuracy, Method, MotionStudy, Solver
 from statics import Arm, Extension, InputError, Outcome, Scene, equilibrium
-from statics.judges.exact_rod import exact_rod
 from statics.derivation.at_rest import write
+from statics.judges.exact_rod import exact_rod
 
 TENSIONS = (0.0, 1.0, 2.0, 5.0, 10.0)
 

@@ -12,11 +12,10 @@ from continuum_dyn.answers.ring_down import FEWEST_SAMPLES, RingDown, fit_ring_d
 from continuum_dyn.answers.step_figures import overshoot, rise_time, settling_time
 from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.logged_scenario import logged_scenario
-from continuum_dyn.modes import FEW_COORDINATES, Mode, check, modes, still
+from continuum_dyn.modes import Mode, check, modes, still
 from continuum_dyn.profiles import spans
 from continuum_dyn.record import Log
 from continuum_dyn.study import MotionStudy, Scenario
-from statics.kernels import loading as codegen
 from statics.errors import InputError
 
 BANDS = {"settling_time_5": 0.05, "settling_time_2": 0.02, "settling_time_1": 0.01}
@@ -131,8 +130,7 @@ def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
         assert scenario.accuracy is not None
         scenario = scenario.with_mesh(int(log.arm["subsegments"]), scenario.accuracy.tip)
     check(scenario.scene)
-    few = scenario.scene.arm.segments * len(scenario.scene.coordinates) <= FEW_COORDINATES
-    dynamics = Dynamics(scenario.scene, codegen.load_interpreted if few else codegen.load)
+    dynamics = Dynamics(scenario.scene)
     assert isinstance(scenario.study, MotionStudy)
     end = scenario.study.duration
     inputs = spans(scenario.profiles, end)[-1].inputs(np.array([end]))[0]

@@ -5,8 +5,8 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.support.checked import STRICT
 from statics.effects.effect import Account, Pair, Place
+from statics.support.checked import STRICT
 
 
 @dataclass(frozen=True, config=STRICT)

@@ -2,15 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from continuum_dyn import implicit_kernel, midpoint_kernel
-from continuum_dyn.equations.in_motion import RECIPE
+from continuum_dyn.passes import accelerations, observation
+from continuum_dyn.passes.motion_passes import LINEARIZED, MIDPOINT, MOTION
 from continuum_dyn.profiles import Span
-from statics.kernels import loading as codegen
 from statics.errors import InputError
+from statics.kernels.loading import Family, Kernel, Loader, load
 from statics.scene import Scene
 
 LEDGER = ("kinetic_energy", "elastic_energy", "gravity_energy", "input_power", "dissipated_power")
@@ -42,7 +41,7 @@ class Dynamics:
     without inertia: it has no acceleration.
     """
 
-    def __init__(self, scene: Scene, load: codegen.Loader = codegen.load) -> None:
+    def __init__(self, scene: Scene, load: Loader = load) -> None:
         if not scene.has("inertia"):
             raise InputError("motion needs the effect 'inertia'. Add inertia = {} to [effects].")
         self.scene = scene
@@ -50,7 +49,6 @@ class Dynamics:
         self.size = scene.arm.segments * self.dofs
         self.state_size = 2 * self.size + 2
         self.load = load
-        self.kernel, self.segments, self.disks = self._loaded(RECIPE)
 
     def state(self, coordinates: np.ndarray, rates: np.ndarray | None = None) -> np.ndarray:
         """State from coordinates and rates, shape (segments, dofs), at rest by default; ledger at zero."""
@@ -59,23 +57,27 @@ class Dynamics:
 
     def rate(self, t: float, y: np.ndarray, span: Span) -> np.ndarray:
         """dy/dt."""
-        return self.kernel.rate(t, y, span.pieces, self.segments, self.disks, self.dofs)
+        kernel, *tables = self.linearized
+        return accelerations.rate(kernel.passes, t, y, span.pieces, *tables, self.dofs)
 
-    def jacobian(self, t: float, y: np.ndarray, span: Span) -> np.ndarray:
-        """d(rate)/dy, exact."""
-        return self.kernel.rate_jacobian(t, y, span.pieces, self.segments, self.disks, self.dofs)
+    def jacobian(self, t: float, y: np.ndarray, span: Span, *, once: bool = False) -> np.ndarray:
+        """d(rate)/dy, exact; ``once`` does without a compilation that a single one is not worth."""
+        kernel, *tables = self.linearized
+        function = getattr(accelerations.rate_jacobian, "py_func", None) if once else None
+        return (function or accelerations.rate_jacobian)(kernel.passes, t, y, span.pieces, *tables, self.dofs)
 
     def clearance(self, y: np.ndarray) -> float:
         """Smallest length or hole-to-hole length over L0."""
-        return self.kernel.clearance_sweep(y[: self.size].reshape(-1, self.dofs), self.segments)
+        kernel, segments, _ = self.motion
+        return accelerations.clearance_of(kernel.passes, y[: self.size].reshape(-1, self.dofs), segments)
 
     def closest_disk(self, y: np.ndarray) -> int:
         """Number of the disk before which the arm is nearest to a geometric limit."""
-        arm = self.scene.arm
+        arm, (kernel, table, _) = self.scene.arm, self.motion
         q = y[: self.size].reshape(arm.disks, arm.subsegments, self.dofs)
-        segments = self.segments.reshape(*q.shape[:2], -1)
-        alone = [self.kernel.clearance_sweep(*span) for span in zip(q, segments, strict=True)]
-        return int(np.argmin(alone)) + 1
+        segments = table.reshape(*q.shape[:2], -1)
+        spans = zip(q, segments, strict=True)
+        return int(np.argmin([accelerations.clearance_of(kernel.passes, *span) for span in spans])) + 1
 
     @cached_property
     def frequency(self) -> float:
@@ -99,19 +101,24 @@ class Dynamics:
         return np.concatenate([q, self.frequency * q, np.full(2, energy)])
 
     @cached_property
-    def implicit(self) -> tuple[Any, np.ndarray, np.ndarray]:
-        """The kernel of implicit steps, with its segment and disk tables."""
-        return self._loaded(implicit_kernel.RECIPE)
+    def motion(self) -> tuple[Kernel, np.ndarray, np.ndarray]:
+        """The passes of steps on the chain and of observations, with segment and disk tables."""
+        return self._loaded(MOTION)
 
     @cached_property
-    def midpoint(self) -> tuple[Any, np.ndarray, np.ndarray]:
-        """The kernel of the midpoint rule, with its segment and disk tables."""
-        return self._loaded(midpoint_kernel.RECIPE)
+    def linearized(self) -> tuple[Kernel, np.ndarray, np.ndarray]:
+        """The passes of the right-hand side and of its Jacobian, with segment and disk tables."""
+        return self._loaded(LINEARIZED)
 
-    def _loaded(self, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
-        kernel = self.load(self.scene, recipe)
-        tables = ("segment", kernel.SEGMENT_COLUMNS), ("disk", kernel.DISK_COLUMNS)
-        segments, disks = (self.scene.table(place, columns) for place, columns in tables)
+    @cached_property
+    def midpoint(self) -> tuple[Kernel, np.ndarray, np.ndarray]:
+        """The passes of the midpoint rule, with segment and disk tables."""
+        return self._loaded(MIDPOINT)
+
+    def _loaded(self, family: Family) -> tuple[Kernel, np.ndarray, np.ndarray]:
+        kernel = self.load(self.scene.structure, family)
+        tables = ("segment", kernel.segment_columns), ("disk", kernel.disk_columns)
+        segments, disks = (self.scene.table(site, columns) for site, columns in tables)
         return kernel, segments, disks
 
     def split(self, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -136,7 +143,8 @@ class Dynamics:
         names = [*LEDGER, *(["transport_energy"] if self.scene.arm.base_moves else [])]
         pose, velocity = np.empty((2, *q.shape[:2], 3))
         ledger = np.empty((len(q), len(names)))
-        self.kernel.observe(q, u, inputs, self.segments, self.disks, pose, velocity, ledger)
+        kernel, *tables = self.motion
+        observation.observe(kernel.passes, q, u, inputs, *tables, pose, velocity, ledger)
         return pose, velocity, dict(zip(names, ledger.T, strict=True))
 
     def observe(self, states: np.ndarray, inputs: np.ndarray) -> Observation:
@@ -144,7 +152,10 @@ class Dynamics:
         q, u = self.split(states)
         pose, velocity, ledger = self._observed(q, u, inputs)
         if self.scene.arm.base_moves:
-            self.kernel.add_base_power(q, u, inputs, self.segments, self.disks, ledger["input_power"])
+            power = np.ascontiguousarray(ledger["input_power"])
+            ledger["input_power"] = power
+            kernel, *tables = self.motion
+            observation.add_base_power(kernel.passes, q, u, inputs, *tables, power)
         disk_x, disk_y, disk_theta = np.moveaxis(pose[:, self.scene.arm.disk_nodes], -1, 0)
         return Observation(
             coordinates=q,

@@ -26,7 +26,7 @@ from statics.derivation.recursion import (
     turn_frame,
 )
 from statics.derivation.segment import symbol
-from statics.derivation.step import INWARD, OUTWARD, Step
+from statics.derivation.step import OUTWARD, Step
 from statics.derivation.trace import Trace
 from statics.derivation.virtual_work import SceneForces
 
@@ -230,10 +230,7 @@ def residual_tangent_step(forces: SceneForces) -> Step:
         ("disks", "chain", "residual_change"),
         trace,
         carried=inwards
-        | {
-            f"{name}_change": (0.0, trace.change_of(value, change))
-            for name, (_, value) in inwards.items()
-        },
+        | {f"{name}_change": (0.0, trace.change_of(value, change)) for name, (_, value) in inwards.items()},
         stores={"residual_change": [trace.change_of(value, change) for value in step.stores["residual"]]},
     )
 

@@ -5,10 +5,10 @@ import ast
 from continuum_dyn.equations import motion_steps
 from continuum_dyn.equations.virtual_power import derive_dynamics
 from statics.derivation import recursion
-from statics.kernels.printing import compose
-from statics.errors import InputError
-from statics.scene import Scene
 from statics.derivation.virtual_work import derive_statics
+from statics.errors import InputError
+from statics.kernels.printing import module_text
+from statics.scene import Scene
 
 
 def operations(scene: Scene) -> int:
@@ -19,16 +19,15 @@ def operations(scene: Scene) -> int:
     one.
     """
     if scene.has("inertia"):
-        forces = derive_dynamics(scene)
+        forces = derive_dynamics(scene.structure)
         outward, weights = motion_steps.motion_step(forces), recursion.IMPLICIT
     else:
-        scene = scene.at_rest
-        forces = derive_statics(scene)
+        forces = derive_statics(scene.at_rest.structure)
         outward, weights = recursion.pose_step(forces), recursion.STATIC
     inward = [recursion.residual_step(forces), recursion.eliminate_step(forces, weights)]
     steps = [outward, *inward, recursion.substitute_step(forces, weights)]
-    tree = ast.parse(compose("Counted.", forces, [], steps, ()))
-    names = {step.name for step in steps}
+    tree = ast.parse(module_text("Counted.", forces, [], steps))
+    names = {f"{step.name}_step" for step in steps}
     bodies = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name in names]
     return sum(map(count, bodies))
 

@@ -20,9 +20,9 @@ from typing import Any
 import sympy as sp
 
 from statics.derivation.recursion import turned
-from statics.scene import BASE_MOTION, BASE_POSE
 from statics.derivation.segment import symbol
 from statics.derivation.virtual_work import Forces
+from statics.scene import BASE_MOTION, BASE_POSE
 
 
 def with_transport(part: Forces, loads: sp.Matrix, at: Any) -> Forces:

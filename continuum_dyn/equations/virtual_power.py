@@ -13,7 +13,6 @@ from typing import Any
 import sympy as sp
 
 from continuum_dyn.equations.transport import with_transport
-from statics.structure import Structure
 from statics.derivation.segment import SegmentSymbols, SpanSymbols
 from statics.derivation.virtual_work import (
     Forces,
@@ -26,6 +25,7 @@ from statics.derivation.virtual_work import (
     generalized_force,
     potential,
 )
+from statics.structure import Structure
 
 
 def velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol]) -> Any:

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.integrators import runge_kutta
 from continuum_dyn.integrators.runge_kutta import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.profiles import Span
@@ -54,7 +55,7 @@ class ChainSolver(OdeSolver):
         tableau: Tableau = ESDIRK5,
     ) -> None:
         super().__init__(fun, t0, y0, t_bound, vectorized)
-        self.kernel, segments, disks = dynamics.implicit
+        self.kernel, segments, disks = dynamics.motion
         self.tables = segments, disks
         self.spans, self.span = spans, 0
         self.tableau = tableau
@@ -68,7 +69,9 @@ class ChainSolver(OdeSolver):
             np.empty(shape),
             np.empty((shape[0], 3, 2)),
         )
-        push = self.kernel.start_records(t0, np.asarray(y0, dtype=float), self._arm, self.records)
+        push = runge_kutta.start_records(
+            self.kernel.passes, t0, np.asarray(y0, dtype=float), self._arm, self.records
+        )
         self.next_step = first_step
         self.knows_acceleration = not dynamics.scene.arm.massless_nodes
         if not self.knows_acceleration:
@@ -120,7 +123,8 @@ class ChainSolver(OdeSolver):
     def _advance(self, rows: slice) -> tuple[int, int]:
         """Steps within one span from the first of these rows on: how many, and how they ended."""
         tableau = self.tableau if self.knows_acceleration else SDIRK4
-        ended, taken, self.next_step, self.rate, rejected, iterations = self.kernel.advance(
+        ended, taken, self.next_step, self.rate, rejected, iterations = runge_kutta.advance(
+            self.kernel.passes,
             self.spans[self.span].end,
             self.next_step,
             self.rate,
@@ -138,21 +142,21 @@ class ChainSolver(OdeSolver):
 
     def _dense_output_impl(self) -> DenseOutput:
         rows = slice(0, self.internal_steps + 1)
-        return ChainInterpolant(self.kernel, tuple(column[rows].copy() for column in self.records))
+        return ChainInterpolant(tuple(column[rows].copy() for column in self.records))
 
 
 class ChainInterpolant(DenseOutput):
     """The state within a batch of steps: quintic Hermite polynomials of the coordinates."""
 
-    def __init__(self, kernel: Any, records: tuple[np.ndarray, ...]) -> None:
+    def __init__(self, records: tuple[np.ndarray, ...]) -> None:
         super().__init__(float(records[0][0]), float(records[0][-1]))
-        self.kernel, self.records = kernel, records
+        self.records = records
 
     def _call_impl(self, t: np.ndarray) -> np.ndarray:
         at = np.atleast_1d(t)
         order = np.argsort(at, kind="stable")
         states = np.empty((at.size, self.records[1].shape[1]))
-        self.kernel.interpolate(at[order], self.records, 0, states)
+        runge_kutta.interpolate(at[order], self.records, 0, states)
         if (np.diff(order) != 1).any():
             states[order] = states.copy()
         return states[0] if np.ndim(t) == 0 else states.T

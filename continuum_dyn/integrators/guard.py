@@ -13,8 +13,8 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from continuum_dyn.study import Solver
-from statics.support.interruption import Interruption
 from statics.outcome import Outcome
+from statics.support.interruption import Interruption
 
 Item = TypeVar("Item")
 

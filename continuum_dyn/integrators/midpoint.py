@@ -1,4 +1,4 @@
-"""Steps of the variational midpoint rule on the chain: plain Python, composed into kernels.
+"""Steps of the variational midpoint rule on the chain.
 
 For a scene without dissipation. From coordinates q0 and momenta p0 a step h finds the mean rate v of
 
@@ -20,27 +20,17 @@ Arguments travel in groups:
 """
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from continuum_dyn.equations.motion_passes import displacement, inputs_at
-    from continuum_dyn.generated import (
-        CHAIN_COLUMNS,
-        ELIMINATE_START,
-        INPUTS,
-        MOMENTUM_START,
-        momentum_step,
-        velocity_start,
-        velocity_step,
-    )
-    from continuum_dyn.moving_cable_sweep import measure_moving_cables
-    from statics.chain import clearance_sweep, eliminate_sweep, substitute_sweep
-    from statics.generated import RESIDUAL_START, residual_step
+from continuum_dyn.passes.accelerations import inputs_at
+from continuum_dyn.passes.motion_passes import MidpointPasses
+from statics.kernels.calling import run
+from statics.kernels.compiled import compiled
+from statics.kernels.slots import CLEARANCE, INPUT_POWER, LARGEST, SCALARS, STIFFNESS_WEIGHT
 
-    Arm = tuple[np.ndarray, np.ndarray, np.ndarray]
-    Records = tuple[np.ndarray, np.ndarray, np.ndarray]
+Arm = tuple[np.ndarray, np.ndarray, np.ndarray]
+Records = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 PAST, WORK = 3, 6
 MOST_ITERATIONS = 20
@@ -49,40 +39,44 @@ STAGNANT = 1e5
 """Times what is allowed: changes below that no longer shrink because of rounding."""
 
 
-def momentum_sweeps(
+@compiled
+def momentum_passes(
+    passes: MidpointPasses,
     q: np.ndarray,
     u: np.ndarray,
     inputs: np.ndarray,
-    arm: "Arm",
+    arm: Arm,
     chain: np.ndarray,
     residual: np.ndarray,
     momentum: np.ndarray,
     slope: np.ndarray,
+    scalars: np.ndarray,
 ) -> float:
     """dV/dq into ``residual``, dT/du into ``momentum``, dT/dq into ``slope``; returns the power in."""
-    _, segments, disks = arm
-    measure_moving_cables(q, u, inputs, segments, chain)
-    outward = velocity_start(inputs, segments, chain)
-    for i in range(q.shape[0]):
-        outward = velocity_step(i, outward, q, u, inputs, segments, disks, chain)
-    reaction, beyond = RESIDUAL_START, MOMENTUM_START
-    for i in range(q.shape[0] - 1, -1, -1):
-        reaction = residual_step(i, reaction, disks, chain, residual)
-        beyond = momentum_step(i, beyond, chain, momentum, slope)
-    return outward[0]
+    n, (_, segments, disks) = q.shape[0], arm
+    if passes.lengths != 0:
+        run(passes.lengths, n, scalars, q, u, inputs, segments, chain)
+        run(passes.beyond, n, scalars, chain)
+    run(passes.velocity, n, scalars, q, u, inputs, segments, disks, chain)
+    run(passes.residual, n, scalars, disks, chain, residual)
+    run(passes.momentum, n, scalars, chain, momentum, slope)
+    return scalars[INPUT_POWER]
 
 
+@compiled
 def solve_step(
+    passes: MidpointPasses,
     t: float,
     h: float,
     q: np.ndarray,
     p: np.ndarray,
     v: np.ndarray,
     allowed: float,
-    arm: "Arm",
+    arm: Arm,
     chain: np.ndarray,
     work: np.ndarray,
     pull: np.ndarray,
+    scalars: np.ndarray,
 ) -> tuple[int, float]:
     """Newton's method for the mean rate ``v`` of a step, from its predictor; ``allowed`` in m.
 
@@ -90,24 +84,25 @@ def solve_step(
     in ``pull``; returns the iterations (negative if it did not converge) and the power in. A step of h = 0
     turns momenta into rates, v = M^-1 p.
     """
-    middle, residual, momentum, slope, descent, change = work
-    _, segments, disks = arm
-    inputs = np.empty(INPUTS)
+    middle, residual, momentum, slope, descent, change = work[0], work[1], work[2], work[3], work[4], work[5]
+    n, (_, segments, disks) = q.shape[0], arm
+    inputs = np.empty(passes.inputs)
     inputs_at(t + 0.5 * h, arm[0], inputs)
-    start = (0.25 * h * h, *ELIMINATE_START[1:])
     last, power = math.inf, 0.0
     for iteration in range(1, MOST_ITERATIONS + 1):
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 middle[i, k] = q[i, k] + 0.5 * h * v[i, k]
-        power = momentum_sweeps(middle, v, inputs, arm, chain, residual, momentum, slope)
+        power = momentum_passes(passes, middle, v, inputs, arm, chain, residual, momentum, slope, scalars)
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 pull[i, k] = residual[i, k] - slope[i, k]
                 residual[i, k] = momentum[i, k] + 0.5 * h * pull[i, k] - p[i, k]
-        eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
-        substitute_sweep(chain, descent, change)
-        size = abs(h) * displacement(chain, change)
+        scalars[STIFFNESS_WEIGHT] = 0.25 * h * h
+        run(passes.eliminate, n, scalars, segments, disks, chain, residual, descent, descent)
+        run(passes.substitute, n, scalars, chain, descent, change)
+        run(passes.displacement, n, scalars, chain, change)
+        size = abs(h) * math.sqrt(scalars[LARGEST])
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 v[i, k] += change[i, k]
@@ -119,6 +114,7 @@ def solve_step(
     return -MOST_ITERATIONS, power
 
 
+@compiled
 def predict(past: np.ndarray, v: np.ndarray) -> None:
     """The next step's mean rate into ``v``: the parabola through those of the last three."""
     for i in range(v.shape[0]):
@@ -126,8 +122,15 @@ def predict(past: np.ndarray, v: np.ndarray) -> None:
             v[i, k] = 3.0 * (past[0, i, k] - past[1, i, k]) + past[2, i, k]
 
 
+@compiled
 def advance(
-    t: float, h: float, records: "Records", past: np.ndarray, allowed: float, arm: "Arm"
+    passes: MidpointPasses,
+    t: float,
+    h: float,
+    records: Records,
+    past: np.ndarray,
+    allowed: float,
+    arm: Arm,
 ) -> tuple[int, int]:
     """Equal steps from (t, row 0 of the records) until they are full, or a step does not converge.
 
@@ -137,12 +140,14 @@ def advance(
     qs, ps, input_work = records
     rows, n, dofs = qs.shape
     v, pull = np.empty((n, dofs)), np.empty((n, dofs))
-    work, chain = np.empty((WORK, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    work, chain, scalars = np.empty((WORK, n, dofs)), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     iterations = 0
     for row in range(1, rows):
         predict(past, v)
         begin = t + (row - 1) * h
-        took, power = solve_step(begin, h, qs[row - 1], ps[row - 1], v, allowed, arm, chain, work, pull)
+        took, power = solve_step(
+            passes, begin, h, qs[row - 1], ps[row - 1], v, allowed, arm, chain, work, pull, scalars
+        )
         iterations += abs(took)
         if took < 0:
             return row - 1, iterations
@@ -150,7 +155,8 @@ def advance(
             for k in range(dofs):
                 qs[row, i, k] = qs[row - 1, i, k] + h * v[i, k]
                 ps[row, i, k] = ps[row - 1, i, k] - h * pull[i, k]
-        bad = clearance_sweep(qs[row], arm[1]) <= 0.0
+        run(passes.clearance, n, scalars, qs[row], arm[1])
+        bad = scalars[CLEARANCE] <= 0.0
         if bad and row > 1:
             return row - 1, iterations
         input_work[row] = input_work[row - 1] + h * power
@@ -162,17 +168,28 @@ def advance(
     return rows - 1, iterations
 
 
-def start_momenta(t: float, q: np.ndarray, u: np.ndarray, arm: "Arm", p: np.ndarray) -> None:
+@compiled
+def start_momenta(
+    passes: MidpointPasses, t: float, q: np.ndarray, u: np.ndarray, arm: Arm, p: np.ndarray
+) -> None:
     """The momenta of coordinates and rates at time t, into ``p``."""
     n, dofs = q.shape
-    work, chain = np.empty((2, n, dofs)), np.empty((n, CHAIN_COLUMNS))
-    inputs = np.empty(INPUTS)
+    work, chain, scalars = np.empty((2, n, dofs)), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
+    inputs = np.empty(passes.inputs)
     inputs_at(t, arm[0], inputs)
-    momentum_sweeps(q, u, inputs, arm, chain, work[0], p, work[1])
+    momentum_passes(passes, q, u, inputs, arm, chain, work[0], p, work[1], scalars)
 
 
+@compiled
 def sample(
-    at: np.ndarray, t: float, h: float, records: "Records", allowed: float, arm: "Arm", found: np.ndarray
+    passes: MidpointPasses,
+    at: np.ndarray,
+    t: float,
+    h: float,
+    records: Records,
+    allowed: float,
+    arm: Arm,
+    found: np.ndarray,
 ) -> None:
     """States at the increasing times ``at`` into ``found``, (len(at), size); ``t`` is the time of row 0.
 
@@ -183,14 +200,16 @@ def sample(
     rows, n, dofs = qs.shape
     size = n * dofs
     v, pull = np.empty((n, dofs)), np.empty((n, dofs))
-    work, chain = np.empty((WORK, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    work, chain, scalars = np.empty((WORK, n, dofs)), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     for m in range(len(at)):
         row = min(int((at[m] - t) / h), rows - 1)
         part = at[m] - (t + row * h)
         end = min(row + 1, rows - 1)
         v[:] = (qs[end] - qs[end - 1]) / h
-        _, power = solve_step(t + row * h, part, qs[row], ps[row], v, allowed, arm, chain, work, pull)
+        _, power = solve_step(
+            passes, t + row * h, part, qs[row], ps[row], v, allowed, arm, chain, work, pull, scalars
+        )
         q, p = qs[row] + part * v, ps[row] - part * pull
-        solve_step(at[m], 0.0, q, p, v, allowed, arm, chain, work, pull)
+        solve_step(passes, at[m], 0.0, q, p, v, allowed, arm, chain, work, pull, scalars)
         found[m, :size], found[m, size : 2 * size] = q.ravel(), v.ravel()
         found[m, 2 * size], found[m, 2 * size + 1] = input_work[row] + part * power, 0.0

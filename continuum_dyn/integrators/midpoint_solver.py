@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.integrators.midpoint import PAST
+from continuum_dyn.integrators import midpoint
 from continuum_dyn.profiles import Span
 
 BATCH = 256
@@ -49,8 +49,8 @@ class MidpointSolver(OdeSolver):
         shape = (BATCH + 1, *q.shape)
         self.records = np.empty(shape), np.empty(shape), np.empty(shape[0])
         self.records[0][0], self.records[2][0] = q, y0[-2]
-        self.kernel.start_momenta(t0, q, u, self.arm, self.records[1][0])
-        self.past = np.tile(u, (PAST, 1, 1))
+        midpoint.start_momenta(self.kernel.passes, t0, q, u, self.arm, self.records[1][0])
+        self.past = np.tile(u, (midpoint.PAST, 1, 1))
         self.internal_steps = 0
 
     def _time(self, taken: int) -> float:
@@ -61,8 +61,8 @@ class MidpointSolver(OdeSolver):
             column[0] = column[self.internal_steps]
         rows = min(BATCH, self.steps_left, self.steps - self.taken) + 1
         records = tuple(column[:rows] for column in self.records)
-        taken, iterations = self.kernel.advance(
-            self._time(self.taken), self.size, records, self.past, self.allowed, self.arm
+        taken, iterations = midpoint.advance(
+            self.kernel.passes, self._time(self.taken), self.size, records, self.past, self.allowed, self.arm
         )
         self.internal_steps = taken
         self.taken += taken
@@ -103,7 +103,7 @@ class MidpointInterpolant(DenseOutput):
         order = np.argsort(at, kind="stable")
         found = np.empty((at.size, 2 * self.records[0][0].size + 2))
         arguments = (self.t_old, self.size, self.records, self.allowed, self.arm)
-        self.kernel.sample(at[order], *arguments, found)
+        midpoint.sample(self.kernel.passes, at[order], *arguments, found)
         states = np.empty_like(found)
         states[order] = found
         return states[0] if np.ndim(t) == 0 else states.T

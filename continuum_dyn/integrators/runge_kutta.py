@@ -1,4 +1,4 @@
-"""Steps of a diagonally implicit Runge-Kutta method on the chain: plain Python, composed into kernels.
+"""Steps of a diagonally implicit Runge-Kutta method on the chain.
 
 Because q' = u, the acceleration w is the only unknown of a stage: with g = gamma h,
 
@@ -21,18 +21,31 @@ Arguments travel in groups:
 """
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from continuum_dyn.equations.motion_passes import acceleration, displacement, inputs_at, motion_sweep
-    from continuum_dyn.generated import CHAIN_COLUMNS, ELIMINATE_START, INPUTS
-    from statics.chain import clearance_sweep, eliminate_sweep, residual_sweep, substitute_sweep
+from continuum_dyn.passes.accelerations import (
+    acceleration,
+    clearance_of,
+    displacement,
+    inputs_at,
+    motion_pass,
+)
+from continuum_dyn.passes.motion_passes import MotionPasses
+from statics.kernels.calling import run
+from statics.kernels.compiled import compiled
+from statics.kernels.slots import (
+    DAMPING_WEIGHT,
+    DISSIPATED_POWER,
+    INPUT_POWER,
+    SCALARS,
+    STIFFNESS_WEIGHT,
+)
+from statics.passes.search import copy
 
-    Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-    Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]
-    Moving = tuple[np.ndarray, np.ndarray, np.ndarray]
+Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]
+Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 MOST_ITERATIONS = 8
 """Newton iterations after which a stage is given up."""
@@ -44,6 +57,7 @@ SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
 
 
+@compiled
 def prepare(
     s: int,
     h: float,
@@ -73,17 +87,20 @@ def prepare(
                 stage_w[s, m] += weight * stage_w[j, m]
 
 
+@compiled
 def solve_stage(
+    passes: MotionPasses,
     known_q: np.ndarray,
     known_u: np.ndarray,
     g: float,
     allowed: float,
     rate: float,
-    stage: "Moving",
+    stage: Triple,
     inputs: np.ndarray,
-    arm: "Moving",
+    arm: Triple,
     chain: np.ndarray,
     work: np.ndarray,
+    scalars: np.ndarray,
 ) -> tuple[int, float]:
     """Newton's method for one ``stage``: its q, u and w (n, dofs), w from its predictor; ``allowed`` in m.
 
@@ -92,7 +109,7 @@ def solve_stage(
     q, u, w = stage
     _, segments, disks = arm
     residual, descent, change = work[0], work[1], work[2]
-    start = (g, g * g, *ELIMINATE_START[2:])
+    n = q.shape[0]
     last, iterations = 0.0, 0
     while True:
         for i in range(q.shape[0]):
@@ -103,11 +120,12 @@ def solve_stage(
             return iterations, rate
         if iterations == MOST_ITERATIONS:
             return -iterations, rate
-        motion_sweep(q, u, w, inputs, segments, disks, chain)
-        residual_sweep(disks, chain, residual)
-        eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
-        substitute_sweep(chain, descent, change)
-        size = g * g * displacement(chain, change)
+        motion_pass(passes, q, u, w, inputs, segments, disks, chain, scalars)
+        run(passes.residual, n, scalars, disks, chain, residual)
+        scalars[DAMPING_WEIGHT], scalars[STIFFNESS_WEIGHT] = g, g * g
+        run(passes.eliminate, n, scalars, segments, disks, chain, residual, descent, descent)
+        run(passes.substitute, n, scalars, chain, descent, change)
+        size = g * g * displacement(passes, chain, change, scalars)
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 w[i, k] += change[i, k]
@@ -119,18 +137,21 @@ def solve_stage(
             return -iterations, 0.5
 
 
+@compiled
 def step_once(
+    passes: MotionPasses,
     t: float,
     h: float,
     y: np.ndarray,
     rate: float,
-    method: "Method",
+    method: Method,
     tolerance: float,
-    arm: "Moving",
+    arm: Triple,
     chain: np.ndarray,
     work: np.ndarray,
-    stages: "Moving",
+    stages: Triple,
     next_y: np.ndarray,
+    scalars: np.ndarray,
 ) -> tuple[float, float, int]:
     """All stages of one step from (t, y), whose first acceleration is known.
 
@@ -142,16 +163,19 @@ def step_once(
     stage_q, stage_u, stage_w = stages
     count, n, dofs = stage_w.shape
     size = n * dofs
-    stage_q[0] = y[:size].reshape((n, dofs))
-    stage_u[0] = y[size : 2 * size].reshape((n, dofs))
-    inputs = np.empty(INPUTS)
-    known_q, known_u, error = work[3].ravel(), work[4].ravel(), work[5].ravel()
-    flat_u, flat_w = stage_u.reshape((count, size)), stage_w.reshape((count, size))
+    flat_q, flat_u = stage_q.reshape((count, size)), stage_u.reshape((count, size))
+    flat_w = stage_w.reshape((count, size))
+    flat = work.reshape((work.shape[0], size))
+    known_q, known_u, error = flat[3], flat[4], flat[5]
+    inputs = np.empty(passes.inputs)
+    for m in range(size):
+        flat_q[0, m], flat_u[0, m] = y[m], y[size + m]
     iterations = 0
     for s in range(1, count):
         prepare(s, h, y, a, predictor, flat_u, flat_w, known_q, known_u)
         inputs_at(t + c[s] * h, arm[0], inputs)
         took, rate = solve_stage(
+            passes,
             work[3],
             work[4],
             a[s, s] * h,
@@ -162,25 +186,27 @@ def step_once(
             arm,
             chain,
             work,
+            scalars,
         )
         iterations += abs(took)
         if took < 0:
             return math.inf, rate, iterations
     last = count - 1
-    next_y[:size] = stage_q[last].ravel()
-    next_y[size : 2 * size] = stage_u[last].ravel()
     for m in range(size):
+        next_y[m], next_y[size + m] = flat_q[last, m], flat_u[last, m]
         error[m] = 0.0
         for s in range(count):
             error[m] += h * error_weights[s] * (flat_u[s, m] + lasting * flat_w[s, m])
-    return displacement(chain, work[5]), rate, iterations
+    return displacement(passes, chain, work[5], scalars), rate, iterations
 
 
+@compiled
 def shrinkage(part: float, order: int) -> float:
     """Factor for a step whose error was ``part`` times the tolerance, too much or not finite."""
     return max(MOST_SHRINK, SAFETY * part ** (-1.0 / order)) if math.isfinite(part) else 0.25
 
 
+@compiled
 def growth(part: float, last_part: float, order: int) -> float:
     """Factor for the step after one whose error was ``part`` of the tolerance, after one of ``last_part``.
 
@@ -190,15 +216,17 @@ def growth(part: float, last_part: float, order: int) -> float:
     return min(MOST_GROWTH, max(MOST_SHRINK, factor))
 
 
+@compiled
 def advance(
+    passes: MotionPasses,
     t_bound: float,
     h: float,
     rate: float,
-    records: "Records",
-    method: "Method",
+    records: Records,
+    method: Method,
     order: int,
     tolerance: float,
-    arm: "Moving",
+    arm: Triple,
 ) -> tuple[int, int, float, float, int, int]:
     """Steps from row 0 of the records until they are full or ``t_bound`` (s) is reached.
 
@@ -211,7 +239,7 @@ def advance(
     _, n, dofs = accelerations.shape
     shape = (count, n, dofs)
     stages = (np.empty(shape), np.empty(shape), np.empty(shape))
-    work, chain = np.empty((6, n, dofs)), np.empty((n, CHAIN_COLUMNS))
+    work, chain, scalars = np.empty((6, n, dofs)), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     taken, rejected, iterations = 0, 0, 0
     last_part = 1.0
     while taken < len(times) - 1:
@@ -223,8 +251,9 @@ def advance(
             return TOO_SMALL, taken, h, rate, rejected, iterations
         reaches = h >= 0.99 * left
         step = left if reaches else min(h, 0.5 * left)
-        stages[2][0] = accelerations[taken]
+        copy(accelerations[taken], stages[2][0])
         error, rate, took = step_once(
+            passes,
             t,
             step,
             states[taken],
@@ -236,6 +265,7 @@ def advance(
             work,
             stages,
             states[taken + 1],
+            scalars,
         )
         iterations += took
         if not error <= tolerance:
@@ -245,19 +275,20 @@ def advance(
         part = max(error / tolerance, 1e-6)
         factor, last_part = growth(part, last_part, order), part
         h = max(h, step) if reaches and factor > 1.0 else step * factor
-        states[taken + 1, 2 * n * dofs :] = 0.0
-        bad = clearance_sweep(stages[0][count - 1], arm[1]) <= 0.0 or not finite(states[taken + 1])
+        states[taken + 1, 2 * n * dofs], states[taken + 1, 2 * n * dofs + 1] = 0.0, 0.0
+        bad = clearance_of(passes, stages[0][count - 1], arm[1]) <= 0.0 or not finite(states[taken + 1])
         if bad and taken > 0:
             return NO_ROOM, taken, step, rate, rejected, iterations
         taken += 1
         times[taken] = t_bound if reaches else t + step
-        accelerations[taken] = stages[2][count - 1]
-        add_work(taken, records, arm, chain, work)
+        copy(stages[2][count - 1], accelerations[taken])
+        add_work(passes, taken, records, arm, chain, work, scalars)
         if bad:
             return NO_ROOM, taken, h, rate, rejected, iterations
     return (FINISHED if times[taken] >= t_bound else GOING_ON), taken, h, rate, rejected, iterations
 
 
+@compiled
 def finite(row: np.ndarray) -> bool:
     """Whether every number of a row is finite; makes no array of its own."""
     good = True
@@ -266,7 +297,16 @@ def finite(row: np.ndarray) -> bool:
     return good
 
 
-def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, work: np.ndarray) -> None:
+@compiled
+def add_work(
+    passes: MotionPasses,
+    row: int,
+    records: Records,
+    arm: Triple,
+    chain: np.ndarray,
+    work: np.ndarray,
+    scalars: np.ndarray,
+) -> None:
     """The integrals of the powers at the end of step ``row``, by Lobatto's rule on the step's interpolant.
 
     The stages would do for that in principle; but damping multiplies the stages' own, lower order in
@@ -276,17 +316,18 @@ def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, wor
     _, n, dofs = accelerations.shape
     size = n * dofs
     pieces, segments, disks = arm
-    inputs, between = np.empty(INPUTS), np.empty((3, states.shape[1]))
+    inputs, between, at = np.empty(passes.inputs), np.empty((3, states.shape[1])), np.empty(3)
     h = times[row] - times[row - 1]
     middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / ROOT_5
-    at = np.array([middle - apart, middle + apart, times[row]])
+    at[0], at[1], at[2] = middle - apart, middle + apart, times[row]
     interpolate(at[:2], records, row - 1, between)
-    between[2] = states[row]
+    for m in range(states.shape[1]):
+        between[2, m] = states[row, m]
     for m in range(3):
         inputs_at(at[m], pieces, inputs)
         q, u = between[m, :size].reshape((n, dofs)), between[m, size : 2 * size].reshape((n, dofs))
-        power_in, dissipated = motion_sweep(q, u, work[0], inputs, segments, disks, chain)
-        powers[row, m, 0], powers[row, m, 1] = power_in, dissipated
+        motion_pass(passes, q, u, work[0], inputs, segments, disks, chain, scalars)
+        powers[row, m, 0], powers[row, m, 1] = scalars[INPUT_POWER], scalars[DISSIPATED_POWER]
     for part in range(2):
         start, first, second, end = (
             powers[row - 1, 2, part],
@@ -298,7 +339,8 @@ def add_work(row: int, records: "Records", arm: "Moving", chain: np.ndarray, wor
         states[row, 2 * size + part] = states[row - 1, 2 * size + part] + gained
 
 
-def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") -> float:
+@compiled
+def start_records(passes: MotionPasses, t: float, y: np.ndarray, arm: Triple, records: Records) -> float:
     """Row 0 of the records: a time, a state, its acceleration and its powers.
 
     Returns the largest acceleration of a disk that comes of the coordinates' own, m/s^2.
@@ -306,15 +348,18 @@ def start_records(t: float, y: np.ndarray, arm: "Moving", records: "Records") ->
     times, states, accelerations, powers = records
     pieces, segments, disks = arm
     _, n, dofs = accelerations.shape
-    inputs, chain = np.empty(INPUTS), np.empty((n, CHAIN_COLUMNS))
+    inputs, chain, scalars = np.empty(passes.inputs), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     inputs_at(t, pieces, inputs)
     times[0], states[0] = t, y
+    work = np.empty((2, n, dofs))
     q, u = states[0, : n * dofs].reshape((n, dofs)), states[0, n * dofs : 2 * n * dofs].reshape((n, dofs))
-    powers[0, 2] = acceleration(q, u, inputs, segments, disks, chain, accelerations[0])
-    return displacement(chain, accelerations[0])
+    acceleration(passes, q, u, inputs, segments, disks, chain, work, accelerations[0], scalars)
+    powers[0, 2, 0], powers[0, 2, 1] = scalars[INPUT_POWER], scalars[DISSIPATED_POWER]
+    return displacement(passes, chain, accelerations[0], scalars)
 
 
-def interpolate(at: np.ndarray, records: "Records", row: int, found: np.ndarray) -> None:
+@compiled
+def interpolate(at: np.ndarray, records: Records, row: int, found: np.ndarray) -> None:
     """States at the increasing times ``at``, from the step after ``row`` on, into ``found``, (len(at), size).
 
     Quintic Hermite for coordinates, from their rates and accelerations at both ends of a step; its
@@ -323,6 +368,7 @@ def interpolate(at: np.ndarray, records: "Records", row: int, found: np.ndarray)
     times, states, accelerations, powers = records
     _, n, dofs = accelerations.shape
     size = n * dofs
+    flat = accelerations.reshape((len(accelerations), size))
     for m in range(len(at)):
         while row < len(times) - 2 and at[m] > times[row + 1]:
             row += 1
@@ -338,7 +384,7 @@ def interpolate(at: np.ndarray, records: "Records", row: int, found: np.ndarray)
         end_rate_slope = -12.0 * s2 + 28.0 * s3 - 15.0 * s2 * s2
         start_push_slope = s - 4.5 * s2 + 6.0 * s3 - 2.5 * s2 * s2
         end_push_slope = 1.5 * s2 - 4.0 * s3 + 2.5 * s2 * s2
-        w0, w1 = accelerations[row].ravel(), accelerations[row + 1].ravel()
+        w0, w1 = flat[row], flat[row + 1]
         at_start, at_end, between = states[row], states[row + 1], found[m]
         for j in range(size):
             change = at_end[j] - at_start[j]

@@ -10,8 +10,8 @@ import numpy as np
 
 from continuum_dyn.record.log_format import PLOTTED, Column
 from statics.errors import LogError
-from statics.support.interruption import held
 from statics.quantities import QUANTITIES
+from statics.support.interruption import held
 
 CHUNK = 512
 """Rows of a dataset that grows in one piece of the file."""

@@ -63,9 +63,7 @@ def beyond_step(forces: SceneForces, *, moves: bool = False) -> Step:
     for name in names:
         whole = trace.name(f"length_beyond{name}", symbol(f"beyond{name}") + symbol(f"hole_to_hole{name}"))
         carried[f"beyond{name}"] = (0.0, whole)
-    return Step(
-        "beyond", "Inwards: lengths beyond each hole.", INWARD, ("chain",), trace, carried=carried
-    )
+    return Step("beyond", "Inwards: lengths beyond each hole.", INWARD, ("chain",), trace, carried=carried)
 
 
 def lengths_tangent_step(forces: SceneForces, outward: Outward) -> Step:

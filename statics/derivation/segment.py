@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 import sympy as sp
 
 from statics.arm import CableKind
+from statics.derivation.sigma import Sigma
 from statics.errors import did_you_mean
 from statics.quantities import QUANTITIES
-from statics.derivation.sigma import Sigma
 
 STILL = sp.Float(1e-60)
 """Speed (m/s, rad/s) so small that, added as a square, it changes no bit of one beyond 1e-50."""

@@ -13,9 +13,6 @@ from typing import Any
 
 import sympy as sp
 
-from statics.effects import Effect, Pair
-from statics.errors import InputError
-from statics.structure import Structure
 from statics.derivation.segment import (
     CableSymbols,
     CorePointSymbols,
@@ -23,6 +20,9 @@ from statics.derivation.segment import (
     SegmentSymbols,
     SpanSymbols,
 )
+from statics.effects import Effect, Pair
+from statics.errors import InputError
+from statics.structure import Structure
 
 Groups = list[tuple[Effect, list[Pair]]]
 """Effects, each with its pairs at one place."""

@@ -6,8 +6,8 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.support.checked import STRICT
 from statics.effects.effect import Account, Pair, Place
+from statics.support.checked import STRICT
 
 SLIP_PART = 1e-6
 """Part of the arm's length that a cable at rest slips through a hole until friction is three quarters."""

@@ -6,8 +6,8 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm, Cable
-from statics.support.checked import STRICT
 from statics.effects.effect import Account, Pair, Place
+from statics.support.checked import STRICT
 
 
 @dataclass(frozen=True, config=STRICT)

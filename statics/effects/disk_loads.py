@@ -12,9 +12,9 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm, DiskNumber
-from statics.support.checked import STRICT, Vector
 from statics.effects.effect import Account, Pair, Place
 from statics.errors import InputError
+from statics.support.checked import STRICT, Vector
 
 
 @dataclass(frozen=True, config=STRICT)

@@ -5,8 +5,8 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.support.checked import STRICT, Vector
 from statics.effects.effect import Account, Pair, Place
+from statics.support.checked import STRICT, Vector
 
 
 @dataclass(frozen=True, config=STRICT)

@@ -73,7 +73,9 @@ class Kernel:
     ``disk_columns`` name the columns of the tables that a scene fills.
     """
 
-    def __init__(self, text: str, family: Family, compile_passes: "Callable[[Kernel], Mapping[str, int]]") -> None:
+    def __init__(
+        self, text: str, family: Family, compile_passes: "Callable[[Kernel], Mapping[str, int]]"
+    ) -> None:
         self.text, self.family = text, family
         self.tree = ast.parse(text)
         constants = _constants(self.tree)

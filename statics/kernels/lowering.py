@@ -103,7 +103,7 @@ class _Unit:
         step = self.functions[f"{name}_step"]
         given = [code.load("scalars", str(self.slots[given])) for given in signature.given]
         outward = signature.direction == "outward"
-        code.lines += [f"  %last = sub i64 %n, 1", f"  %entered = icmp sgt i64 %n, 0"]
+        code.lines += ["  %last = sub i64 %n, 1", "  %entered = icmp sgt i64 %n, 0"]
         entry = code.label
         code.lines.append("  br i1 %entered, label %loop, label %done")
         code.block("loop")
@@ -133,7 +133,9 @@ class _Unit:
         for value, result in code.results:
             code.store("scalars", str(self.slots[result]), value)
         arguments = ", ".join(["i64 %n", "ptr %scalars", *(f"ptr %{array}" for array in signature.arrays)])
-        return "\n".join([f"define void @{name}({arguments}) nounwind {{", "entry:", *code.lines, "  ret void", "}"])
+        return "\n".join(
+            [f"define void @{name}({arguments}) nounwind {{", "entry:", *code.lines, "  ret void", "}"]
+        )
 
 
 class _Code:
@@ -210,7 +212,11 @@ class _Code:
             return list(self.scope[node.id])  # pyright: ignore[reportArgumentType]
         if isinstance(node, ast.Tuple):
             return [self.value(part) for part in node.elts]
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in self.unit.functions:
+        if (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id in self.unit.functions
+        ):
             return self.inlined(self.unit.functions[node.func.id], node.args)
         raise _refusal(node)
 

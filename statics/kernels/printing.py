@@ -45,7 +45,12 @@ def module_text(title: str, forces: SceneForces, effects: Sequence[str], steps: 
         effects=", ".join(effects),
         inputs=", ".join(forces.inputs) or "none",
     )
-    parts = [header, _constants(forces, bodies, columns), *(called[name] for name in sorted(called)), *functions]
+    parts = [
+        header,
+        _constants(forces, bodies, columns),
+        *(called[name] for name in sorted(called)),
+        *functions,
+    ]
     return "\n\n".join(parts) + "\n"
 
 
@@ -134,10 +139,14 @@ def _step(body: Body, columns: _Columns, called: dict[str, str]) -> str:
     stored = [s for s in columns.chain if step.name in columns.owners[s] and _computes(body, s)]
     outputs = [value for values in step.stores.values() for value in values]
     targets = [f"{array}[i, {k}]" for array, values in step.stores.items() for k in range(len(values))]
-    lines = [f"{', '.join(names)}{',' if len(names) == 1 else ''} = {source}" for names, source in (
-        (list(body.passed_on), "carried"),
-        (list(step.given), "given"),
-    ) if names]
+    lines = [
+        f"{', '.join(names)}{',' if len(names) == 1 else ''} = {source}"
+        for names, source in (
+            (list(body.passed_on), "carried"),
+            (list(step.given), "given"),
+        )
+        if names
+    ]
     lines += [f"{s} = {columns.text[s]}" for s in loads]
     lines += _assignments(body.lines, called)
     lines += [f"{columns.text[s]} = {s}" for s in stored]
@@ -210,7 +219,9 @@ class _Printer(PythonCodePrinter):
         base, exponent = expression.args
         if base.is_Symbol and exponent.is_Integer and 2 <= exponent <= 4:
             square = f"{base}*{base}"
-            return f"({square})" if exponent == 2 else f"({base if exponent == 3 else f'({square})'}*({square}))"
+            return (
+                f"({square})" if exponent == 2 else f"({base if exponent == 3 else f'({square})'}*({square}))"
+            )
         return super()._print_Pow(expression, rational=rational)
 
     def _print_AppliedUndef(self, call: Any) -> str:  # noqa: N802 (sympy's name)
@@ -228,5 +239,3 @@ class _Printer(PythonCodePrinter):
 
 def _code(value: Any) -> str:
     return _Printer().doprint(sp.sympify(value))
-
-

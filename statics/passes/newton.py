@@ -212,9 +212,16 @@ def leave_saddle(
     Returns whether there is a way down within the geometric limits.
     """
     n, dofs = q.shape
-    chain, pivots, scalars = np.empty((n, passes.chain_columns)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
+    chain, pivots, scalars = (
+        np.empty((n, passes.chain_columns)),
+        np.empty((n, passes.pivot_columns)),
+        np.empty(SCALARS),
+    )
     residual, descent, change, trial = (
-        np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
+        np.empty((n, dofs)),
+        np.empty((n, dofs)),
+        np.empty((n, dofs)),
+        np.empty((n, dofs)),
     )
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
@@ -226,14 +233,24 @@ def leave_saddle(
         advance(change, -2.0, change, change)
         slope = -slope
     factor = shorten(
-        passes, q, change, 1.0, potential, slope, curvature, clearance,
-        inputs, segments, disks, chain, trial, scalars,
+        passes,
+        q,
+        change,
+        1.0,
+        potential,
+        slope,
+        curvature,
+        clearance,
+        inputs,
+        segments,
+        disks,
+        chain,
+        trial,
+        scalars,
     )
     if factor == 0.0:
         return False
-    lengthen(
-        passes, q, change, factor, 10.0 * LARGEST_TURN, inputs, segments, disks, chain, trial, scalars
-    )
+    lengthen(passes, q, change, factor, 10.0 * LARGEST_TURN, inputs, segments, disks, chain, trial, scalars)
     copy(trial, q)
     return True
 
@@ -254,9 +271,16 @@ def find_stable(
     unstable one ``leave_saddle`` knows the way on.
     """
     n, dofs = q.shape
-    chain, pivots, scalars = np.empty((n, passes.chain_columns)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
+    chain, pivots, scalars = (
+        np.empty((n, passes.chain_columns)),
+        np.empty((n, passes.pivot_columns)),
+        np.empty(SCALARS),
+    )
     residual, descent, change, trial = (
-        np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
+        np.empty((n, dofs)),
+        np.empty((n, dofs)),
+        np.empty((n, dofs)),
+        np.empty((n, dofs)),
     )
     coupled = passes.lengths != 0
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
@@ -282,8 +306,20 @@ def find_stable(
             enough = potential + scale  # the fall is below rounding: only the limits are checked
         longest = LARGEST_TURN / max(turn, 1e-30)
         factor = shorten(
-            passes, q, change, min(1.0, longest), enough, slope, 0.0, clearance,
-            inputs, segments, disks, chain, trial, scalars,
+            passes,
+            q,
+            change,
+            min(1.0, longest),
+            enough,
+            slope,
+            0.0,
+            clearance,
+            inputs,
+            segments,
+            disks,
+            chain,
+            trial,
+            scalars,
         )
         if factor == 0.0:
             return NOT_FOUND, iteration
@@ -312,7 +348,11 @@ def examine_stability(
     eigenvalues of the potential energy's Hessian: at an equilibrium, its unstable directions.
     """
     n, dofs = q.shape
-    chain, pivots, scalars = np.empty((n, passes.chain_columns)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
+    chain, pivots, scalars = (
+        np.empty((n, passes.chain_columns)),
+        np.empty((n, passes.pivot_columns)),
+        np.empty(SCALARS),
+    )
     residual, descent = np.empty((n, dofs)), np.empty((n, dofs))
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     run(passes.residual, n, scalars, disks, chain, residual)

@@ -128,9 +128,7 @@ def find_balance(
         run(passes.substitute, n, scalars, chain, descent, change)
         single, turn = measure(change, unit)
         longest = min(1.0, LARGEST_TURN / max(turn, 1e-30))
-        factor = within_limits(
-            passes, q, change, longest, inputs, segments, disks, chain, trial, scalars
-        )
+        factor = within_limits(passes, q, change, longest, inputs, segments, disks, chain, trial, scalars)
         if factor == 0.0:
             return NOT_FOUND, iteration
         copy(trial, q)

@@ -1,0 +1,1 @@
+"""Independent routes to the same answers: the exact rod, and the paper's printed equations."""
