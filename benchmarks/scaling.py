@@ -10,8 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from continuum_dyn import Scenario, load_scenario
-from continuum_dyn.accuracy import tip_distance
-from continuum_dyn.cost import Motion
+from continuum_dyn.experiments.cost import Motion
+from continuum_dyn.simulation.accuracy import tip_distance
 from continuum_dyn.study import MotionStudy, Solver
 from statics import Scene
 

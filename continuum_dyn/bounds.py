@@ -23,8 +23,8 @@ import numpy as np
 
 from continuum_dyn.expect import Expected
 from continuum_dyn.simulation import Run
+from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.study import Scenario, dissipated_by
-from continuum_dyn.trajectory import Trajectory
 
 ROUNDING = 1e-14
 """Part of the largest energy that a step may lose to rounding."""

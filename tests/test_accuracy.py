@@ -7,8 +7,8 @@ import pytest
 from conftest import SCENARIOS, motion
 
 from continuum_dyn import load_scenario, simulate
-from continuum_dyn.accuracy import LOOSEST, tip_distance
 from continuum_dyn.integrators import Budget
+from continuum_dyn.simulation.accuracy import LOOSEST, tip_distance
 from continuum_dyn.study import Accuracy, Method, Solver
 from statics import InputError, Outcome
 

@@ -17,7 +17,6 @@ from whole_arm import difference_matrix
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.effects import Inertia, MaterialDamping
-from continuum_dyn.integration import inspector, integrate
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes
 from continuum_dyn.profiles import (
@@ -33,6 +32,7 @@ from continuum_dyn.profiles import (
     spans,
 )
 from continuum_dyn.record import read_log, write_log
+from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.smooth_motion import Rate, check_smooth
 from continuum_dyn.study import EquilibriumStudy, MotionStudy, Solver, StepResponseStudy
 from continuum_dyn.views.playback.arm import moving_parts

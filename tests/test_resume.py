@@ -8,8 +8,7 @@ import pytest
 from conftest import SCENARIOS, edited
 from typer.testing import CliRunner
 
-from continuum_dyn import Scenario, load_scenario, samples, simulate
-from continuum_dyn.begun import Begun
+from continuum_dyn import Scenario, load_scenario, simulate
 from continuum_dyn.cli import app
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import Budget
@@ -18,8 +17,10 @@ from continuum_dyn.logged_scenario import logged_scenario
 from continuum_dyn.profiles import inputs_of, spans
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.writing import columns_of
+from continuum_dyn.simulation import samples
+from continuum_dyn.simulation.resumption import Begun
+from continuum_dyn.simulation.trajectory import Trajectory, trajectory_of
 from continuum_dyn.study import MotionStudy, Solver
-from continuum_dyn.trajectory import Trajectory, trajectory_of
 from statics import Outcome, codegen
 from statics.errors import LogError
 

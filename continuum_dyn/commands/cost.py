@@ -15,7 +15,7 @@ from statics.interruption import held
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from continuum_dyn.cost import Cost, MeshPrice
+    from continuum_dyn.experiments.cost import Cost, MeshPrice
 
 
 def cost(
@@ -29,7 +29,7 @@ def cost(
     of its effects; prints error, time and work, and the cheapest way to each error. Writes DIR/NAME_cost.csv,
     NAME_cost_mesh.csv, NAME_cost.h5 and NAME_cost.png.
     """
-    from continuum_dyn.cost import measure
+    from continuum_dyn.experiments.cost import measure
     from continuum_dyn.record import write_cost
     from continuum_dyn.scenario import load_scenario
     from continuum_dyn.views import plots

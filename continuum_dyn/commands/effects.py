@@ -9,7 +9,7 @@ import typer
 from continuum_dyn.commands.show import duration, length, mode_row, plain_table, with_status
 
 if TYPE_CHECKING:
-    from continuum_dyn.cost import LeftOut
+    from continuum_dyn.experiments.cost import LeftOut
     from continuum_dyn.modes import RestModes
     from continuum_dyn.study import Scenario
 
@@ -72,7 +72,7 @@ def show_what_to_leave_out(scenario: "Scenario") -> None:
     """Effects that move the tip by less than is asked for, measured by leaving each out in turn."""
     from rich.console import Console
 
-    from continuum_dyn.cost import Motion, effects
+    from continuum_dyn.experiments.cost import Motion, effects
 
     allowed, said = _allowed(scenario)
     measured = with_status(scenario.title, lambda progress: effects(scenario, Motion(scenario), progress))

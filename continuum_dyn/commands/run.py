@@ -20,10 +20,10 @@ from statics.interruption import held
 from statics.stages import stage
 
 if TYPE_CHECKING:
-    from continuum_dyn.begun import Begun
     from continuum_dyn.log_comparison import Comparison
     from continuum_dyn.record import Log
     from continuum_dyn.simulation import Run
+    from continuum_dyn.simulation.resumption import Begun
     from continuum_dyn.study import Scenario
     from statics.equilibria import Equilibrium
 

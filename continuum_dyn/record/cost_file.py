@@ -6,7 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from continuum_dyn.cost import Cost, MeshPrice
+from continuum_dyn.experiments.cost import Cost, MeshPrice
 from continuum_dyn.record.datasets import TEXT, whole_file, write_dataset, write_scale
 
 

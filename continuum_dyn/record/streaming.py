@@ -27,7 +27,7 @@ from continuum_dyn.record.writing import (
     write_what_was_asked,
 )
 from continuum_dyn.simulation import Run
-from continuum_dyn.trajectory import Trajectory
+from continuum_dyn.simulation.trajectory import Trajectory
 from statics.errors import LogError
 from statics.interruption import held
 

@@ -13,8 +13,8 @@ import numpy as np
 from continuum_dyn.record.datasets import TEXT, whole_file, write_columns
 from continuum_dyn.record.log_format import FORMAT, FORMAT_VERSION, GROUPS
 from continuum_dyn.simulation import Run
+from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.study import MotionStudy, Scenario
-from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from continuum_dyn.cost import Cost
+from continuum_dyn.experiments.cost import Cost
 from continuum_dyn.modes import Mode, RestModes
 from continuum_dyn.reproduce import Rone2012, Shapes
 from continuum_dyn.views.backbone import backbone

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.trajectory import Trajectory, joined, trajectory_of
+from continuum_dyn.simulation.trajectory import Trajectory, joined, trajectory_of
 
 INTERVAL = 1.0
 """Shortest time between two blocks, s: seldom enough to cost little, however many samples a run has."""

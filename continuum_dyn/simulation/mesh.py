@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from continuum_dyn.trajectory import Trajectory
+from continuum_dyn.simulation.trajectory import Trajectory
 from statics.equilibria import Equilibrium
 
 AIM = 0.5

@@ -10,20 +10,20 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from continuum_dyn.accuracy import to_accuracy
-from continuum_dyn.begun import Begun
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.energy_balance import broken_ledger
-from continuum_dyn.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.integrators import Budget, Monitor, choose
-from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
 from continuum_dyn.profiles import Span, spans, spans_from
-from continuum_dyn.resting_words import told_of_path, told_of_points, why
-from continuum_dyn.samples import Samples
-from continuum_dyn.settling import settled, tip_gap
+from continuum_dyn.simulation.accuracy import to_accuracy
+from continuum_dyn.simulation.energy_balance import broken_ledger
+from continuum_dyn.simulation.integration import inspector, integrate, warm_up, with_step
+from continuum_dyn.simulation.mesh import Mesh, extrapolated, to_mesh
+from continuum_dyn.simulation.messages import told_of_path, told_of_points, why
+from continuum_dyn.simulation.rest_gap import settled, tip_gap
+from continuum_dyn.simulation.resumption import Begun
+from continuum_dyn.simulation.samples import Samples
+from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.stability import Growth, judged, why_not_judged
 from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
-from continuum_dyn.trajectory import Trajectory
 from statics.arc_length import MOST_STEPS, follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver

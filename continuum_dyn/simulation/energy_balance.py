@@ -1,6 +1,6 @@
 """Whether the energies of a motion add up: an account of its own, which no error control looks at."""
 
-from continuum_dyn.trajectory import Trajectory
+from continuum_dyn.simulation.trajectory import Trajectory
 
 OPEN = 0.1
 """Part of the largest energy that may be unaccounted for in a motion that its tolerance resolves well."""

@@ -11,15 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.accuracy import tip_distance
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import METHODS, Budget, Monitor
-from continuum_dyn.mesh import between
 from continuum_dyn.modes import rates
 from continuum_dyn.profiles import spans
+from continuum_dyn.simulation.accuracy import tip_distance
+from continuum_dyn.simulation.integration import inspector, integrate, warm_up
+from continuum_dyn.simulation.mesh import between
+from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.study import Method, MotionStudy, Scenario, Solver
-from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.exact_rod import RodError, exact_rod

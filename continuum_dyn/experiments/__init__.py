@@ -1,0 +1,1 @@
+"""Many runs at once: from a scenario to what it costs."""
