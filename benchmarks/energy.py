@@ -16,8 +16,8 @@ from continuum_dyn import load_scenario
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import integrate, warm_up
 from continuum_dyn.integrators import Budget, Monitor
-from continuum_dyn.profiles import Span, Step, spans
-from continuum_dyn.study import Solver
+from continuum_dyn.scenario.profiles import Span, Step, spans
+from continuum_dyn.scenario.scenario import Solver
 from continuum_dyn.trajectory import Trajectory
 from statics import Scene, equilibrium
 

@@ -15,8 +15,8 @@ from continuum_dyn import Scenario, Trajectory, load_scenario
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Monitor
-from continuum_dyn.profiles import spans
-from continuum_dyn.study import Method, MotionStudy, Solver
+from continuum_dyn.scenario.profiles import spans
+from continuum_dyn.scenario.scenario import Method, MotionStudy, Solver
 from statics import equilibrium
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "step_response.toml"

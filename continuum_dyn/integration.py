@@ -16,9 +16,9 @@ from scipy.integrate import OdeSolver
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Budget, Monitor, check
 from continuum_dyn.modes import fastest_frequency
-from continuum_dyn.profiles import Span, inputs_of, joined_spans
 from continuum_dyn.samples import Samples
-from continuum_dyn.study import Solver
+from continuum_dyn.scenario.profiles import Span, inputs_of, joined_spans
+from continuum_dyn.scenario.scenario import Solver
 from continuum_dyn.trajectory import Trajectory
 from statics.outcome import Outcome
 

@@ -20,7 +20,8 @@ from continuum_dyn.effects import Inertia, MaterialDamping
 from continuum_dyn.integration import inspector, integrate
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes
-from continuum_dyn.profiles import (
+from continuum_dyn.record import read_log, write_log
+from continuum_dyn.scenario.profiles import (
     Constant,
     InPieces,
     Profile,
@@ -32,9 +33,8 @@ from continuum_dyn.profiles import (
     Table,
     spans,
 )
-from continuum_dyn.record import read_log, write_log
-from continuum_dyn.smooth_motion import Rate, check_smooth
-from continuum_dyn.study import EquilibriumStudy, MotionStudy, Solver, StepResponseStudy
+from continuum_dyn.scenario.rates import Rate, check_smooth
+from continuum_dyn.scenario.scenario import EquilibriumStudy, MotionStudy, Solver, StepResponseStudy
 from continuum_dyn.views.playback.arm import moving_parts
 from continuum_dyn.views.playback.measures import measures_of
 from continuum_dyn.views.playback.story import story_of

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from continuum_dyn import cost
 from continuum_dyn.cli import app
-from continuum_dyn.commands.show import wrapped
+from continuum_dyn.commands.terminal.show import wrapped
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
 STEP = str(SCENARIOS / "step_response.toml")

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.integrators import METHODS, ChainSolver
-from continuum_dyn.profiles import (
+from continuum_dyn.scenario.profiles import (
     TIME_RESOLUTION,
     Constant,
     Profile,
@@ -25,8 +25,8 @@ from continuum_dyn.profiles import (
     lowest,
     spans,
 )
-from continuum_dyn.smooth_motion import Rate
-from continuum_dyn.study import Method, MotionStudy, Solver
+from continuum_dyn.scenario.rates import Rate
+from continuum_dyn.scenario.scenario import Method, MotionStudy, Solver
 from statics import InputError
 
 

@@ -11,9 +11,9 @@ from conftest import SCENARIOS
 
 from continuum_dyn import Run, Scenario, Trajectory, load_scenario, samples, simulate
 from continuum_dyn.integrators import Budget
-from continuum_dyn.profiles import Sine
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
-from continuum_dyn.study import Accuracy, MotionStudy
+from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.scenario.scenario import Accuracy, MotionStudy
 from statics import Outcome
 from statics.errors import LogError
 

@@ -14,8 +14,8 @@ from continuum_dyn import load_scenario
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Monitor
-from continuum_dyn.profiles import spans
-from continuum_dyn.study import MotionStudy, Solver
+from continuum_dyn.scenario.profiles import spans
+from continuum_dyn.scenario.scenario import MotionStudy, Solver
 from statics import equilibrium
 from statics.effects import Gravity
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.modes import rates
-from continuum_dyn.profiles import Span
-from continuum_dyn.study import Method, dissipated_by
+from continuum_dyn.scenario.profiles import Span
+from continuum_dyn.scenario.scenario import Method, dissipated_by
 from statics.errors import InputError
 from statics.scene import Scene
 

@@ -5,9 +5,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, Discriminator, Field, Tag, WithJsonSchema, create_model
 
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.expect import Expect
-from continuum_dyn.profiles import PROFILES, Constant, Ramp, Sine, SmoothRamp, Step
-from continuum_dyn.study import (
+from continuum_dyn.scenario.csv_table import MAX_ROWS
+from continuum_dyn.scenario.expect import Expect
+from continuum_dyn.scenario.profiles import PROFILES, Constant, Ramp, Sine, SmoothRamp, Step
+from continuum_dyn.scenario.scenario import (
     Accuracy,
     EquilibriumStudy,
     MotionStudy,
@@ -15,7 +16,6 @@ from continuum_dyn.study import (
     Solver,
     StepResponseStudy,
 )
-from continuum_dyn.table_file import MAX_ROWS
 from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassPerDisk, Payload, PerDisk
 from statics.checked import STRICT, Line, NonNegative, Positive, Vector
 

@@ -21,9 +21,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.expect import Expected
+from continuum_dyn.scenario.expect import Expected
+from continuum_dyn.scenario.scenario import Scenario, dissipated_by
 from continuum_dyn.simulation import Run
-from continuum_dyn.study import Scenario, dissipated_by
 from continuum_dyn.trajectory import Trajectory
 
 ROUNDING = 1e-14

@@ -14,11 +14,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from continuum_dyn.expect import Expect
-from continuum_dyn.overrides import overridden
-from continuum_dyn.profiles import Constant, Profile
-from continuum_dyn.scenario_errors import explain
-from continuum_dyn.scenario_file import (
+from continuum_dyn.scenario.csv_table import Tables, table_text
+from continuum_dyn.scenario.expect import Expect
+from continuum_dyn.scenario.messages import explain
+from continuum_dyn.scenario.overrides import overridden
+from continuum_dyn.scenario.profiles import Constant, Profile
+from continuum_dyn.scenario.scenario import RampStudy, Scenario
+from continuum_dyn.scenario.tables import (
     BaseTable,
     CableTable,
     EffectsTable,
@@ -26,9 +28,7 @@ from continuum_dyn.scenario_file import (
     ScenarioFile,
     TableFile,
 )
-from continuum_dyn.study import RampStudy, Scenario
-from continuum_dyn.table_file import Tables, table_text
-from continuum_dyn.text_file import read_text
+from continuum_dyn.scenario.text import read_text
 from statics.arm import PRESETS, Arm, Base, Cable, Each
 from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean

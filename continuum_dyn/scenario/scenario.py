@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from continuum_dyn.profiles import Constant, InPieces, Profile, lowest
-from continuum_dyn.smooth_motion import Rate, check_smooth
+from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, lowest
+from continuum_dyn.scenario.rates import Rate, check_smooth
 from statics.arc_length import check_followable
 from statics.checked import STRICT, Positive
 from statics.effects import Effect
