@@ -16,8 +16,9 @@ from continuum_dyn import load_scenario
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import integrate, warm_up
 from continuum_dyn.integrators import Budget, Monitor
-from continuum_dyn.scenario.profiles import Span, Step, spans
-from continuum_dyn.scenario.scenario import Solver
+from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.profiles import Step
+from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.trajectory import Trajectory
 from statics import Scene, equilibrium
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from continuum_dyn import Run, Scenario, load_scenario, simulate
 from continuum_dyn.record import StreamedLog
 from continuum_dyn.scenario.profiles import Sine
-from continuum_dyn.scenario.scenario import MotionStudy
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import Scene
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from continuum_dyn.scenario.scenario import Solver
+from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.trajectory import Trajectory
 
 LOOSEST, TIGHTEST = 1e-2, 1e-13

@@ -17,8 +17,10 @@ from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.mesh import between
 from continuum_dyn.modes import rates
-from continuum_dyn.scenario.profiles import spans
-from continuum_dyn.scenario.scenario import Method, MotionStudy, Scenario, Solver
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError

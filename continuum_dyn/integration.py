@@ -17,8 +17,8 @@ from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Budget, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.samples import Samples
-from continuum_dyn.scenario.profiles import Span, inputs_of, joined_spans
-from continuum_dyn.scenario.scenario import Solver
+from continuum_dyn.scenario.intervals import Span, inputs_of, joined_spans
+from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.trajectory import Trajectory
 from statics.outcome import Outcome
 

@@ -8,7 +8,8 @@ from scipy.optimize import linear_sum_assignment
 from scipy.sparse.linalg import LinearOperator, eigs
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.scenario.profiles import Constant, Span, spans
+from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.scenario import Scenario
 from statics import codegen
 from statics.equilibria import Equilibrium, StaticSolver

@@ -19,15 +19,10 @@ from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
 from continuum_dyn.resting_words import told_of_path, told_of_points, why
 from continuum_dyn.samples import Samples
-from continuum_dyn.scenario.profiles import Span, spans, spans_from
-from continuum_dyn.scenario.scenario import (
-    MAX_STORED,
-    MotionStudy,
-    RampStudy,
-    Scenario,
-    Solver,
-    StepResponseStudy,
-)
+from continuum_dyn.scenario.intervals import Span, spans, spans_from
+from continuum_dyn.scenario.scenario import MAX_STORED, Scenario
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy, StepResponseStudy
 from continuum_dyn.settling import settled, tip_gap
 from continuum_dyn.stability import Growth, judged, why_not_judged
 from continuum_dyn.trajectory import Trajectory

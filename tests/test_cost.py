@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 
 from continuum_dyn import Scenario, cost, load_scenario
 from continuum_dyn.cli import app
-from continuum_dyn.scenario.scenario import Method, MotionStudy
+from continuum_dyn.scenario.solver import Method
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.views.figures import plots
 from statics import InputError, Payload
 

@@ -17,7 +17,7 @@ from continuum_dyn.experiments.bounds import bounds_of, energies
 from continuum_dyn.experiments.hard_cases import HardCase, judge, load_cases
 from continuum_dyn.integrators import METHODS
 from continuum_dyn.record import write_log
-from continuum_dyn.scenario.scenario import Method
+from continuum_dyn.scenario.solver import Method
 from statics import InputError, Outcome
 
 HARD = SCENARIOS / "hard"

@@ -9,7 +9,7 @@ from random_scenes import interpreted
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.scenario.profiles import Constant
-from continuum_dyn.scenario.scenario import EquilibriumStudy, RampStudy
+from continuum_dyn.scenario.studies import EquilibriumStudy, RampStudy
 from statics import Arm, Bending, Cables, Extension, Outcome, Scene, StaticSolver
 from statics.effects import Effect
 from statics.ramp import limit_on_the_way, ramp

@@ -8,7 +8,8 @@ from conftest import motion, moving, rone2012
 from continuum_dyn import Scenario, Trajectory
 from continuum_dyn.accuracy import tip_distance
 from continuum_dyn.scenario.profiles import Step
-from continuum_dyn.scenario.scenario import Method, MotionStudy, Solver
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import Each, InputError, Scene
 
 TIP = 3e-3

@@ -20,8 +20,10 @@ from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.integration import inspector, integrate
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import MOST_COORDINATES, Mode, RestModes, modes_at_rest, rates_without
-from continuum_dyn.scenario.profiles import Constant, spans
-from continuum_dyn.scenario.scenario import EquilibriumStudy, Solver
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.profiles import Constant
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import EquilibriumStudy
 from continuum_dyn.views.figures import plots
 from statics import Arm, Bending, Cable, InputError, Scene
 from statics.quantities import QUANTITIES

@@ -13,7 +13,7 @@ from continuum_dyn import Run, Scenario, load_scenario, simulate
 from continuum_dyn.integrators import Budget
 from continuum_dyn.record import FORMAT_VERSION, read_log, write_log
 from continuum_dyn.scenario.profiles import Step
-from continuum_dyn.scenario.scenario import MotionStudy, RampStudy
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy
 from statics import Outcome, Scene
 from statics.errors import LogError
 from statics.quantities import QUANTITIES

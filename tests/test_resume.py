@@ -17,8 +17,9 @@ from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.record.resuming import logged_motion
 from continuum_dyn.record.writing import columns_of
-from continuum_dyn.scenario.profiles import inputs_of, spans
-from continuum_dyn.scenario.scenario import MotionStudy, Solver
+from continuum_dyn.scenario.intervals import inputs_of, spans
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.trajectory import Trajectory, trajectory_of
 from statics import Outcome, codegen
 from statics.errors import LogError

@@ -13,7 +13,8 @@ from continuum_dyn import Run, Scenario, Trajectory, load_scenario, samples, sim
 from continuum_dyn.integrators import Budget
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.scenario.profiles import Sine
-from continuum_dyn.scenario.scenario import Accuracy, MotionStudy
+from continuum_dyn.scenario.solver import Accuracy
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import Outcome
 from statics.errors import LogError
 

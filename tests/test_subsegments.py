@@ -13,7 +13,8 @@ from continuum_dyn.accuracy import tip_distance
 from continuum_dyn.integrators import Budget
 from continuum_dyn.mesh import between, extrapolated, to_mesh
 from continuum_dyn.scenario.profiles import Sine, Step
-from continuum_dyn.scenario.scenario import Accuracy, Method, MotionStudy, Solver
+from continuum_dyn.scenario.solver import Accuracy, Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import Arm, Extension, InputError, Outcome, Scene, equilibrium
 from statics.exact_rod import exact_rod
 from statics.statics_kernel import write

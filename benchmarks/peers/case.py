@@ -14,8 +14,9 @@ from continuum_dyn import load_scenario
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Monitor
-from continuum_dyn.scenario.profiles import spans
-from continuum_dyn.scenario.scenario import MotionStudy, Solver
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import equilibrium
 from statics.effects import Gravity
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_dyn.scenario.profiles import SAME, Span, spans
+from continuum_dyn.scenario.intervals import SAME, Span, spans
 from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import InputError
 

@@ -9,7 +9,8 @@ import numpy as np
 from continuum_dyn.answers.lag import gap, rate_within
 from continuum_dyn.answers.pace import at_pace
 from continuum_dyn.answers.ramp import RampAnswers, RateLag
-from continuum_dyn.scenario.scenario import MotionStudy, Scenario
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import simulate
 from statics.errors import InputError
 

@@ -14,8 +14,9 @@ from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.modes import FEW_COORDINATES, Mode, check, modes, still
 from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
-from continuum_dyn.scenario.profiles import spans
-from continuum_dyn.scenario.scenario import MotionStudy, Scenario
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import codegen
 from statics.errors import InputError
 

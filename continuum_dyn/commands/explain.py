@@ -36,7 +36,7 @@ def explain(
         show_modes,
         show_what_to_leave_out,
     )
-    from continuum_dyn.scenario.building import load_scenario
+    from continuum_dyn.scenario.reading import load_scenario
 
     scenario = load_scenario(file, overrides or ())
     scene = scenario.scene
@@ -86,8 +86,8 @@ def _modes(scenario: Any) -> Any:
 def _print_method(scenario: Any) -> None:
     from continuum_dyn.dynamics import Dynamics
     from continuum_dyn.integrators import choose
-    from continuum_dyn.scenario.profiles import spans
-    from continuum_dyn.scenario.scenario import MotionStudy
+    from continuum_dyn.scenario.intervals import spans
+    from continuum_dyn.scenario.studies import MotionStudy
     from statics.equilibria import StaticSolver
 
     if not isinstance(scenario.study, MotionStudy) or scenario.solver.method != "auto":

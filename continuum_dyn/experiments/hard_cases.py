@@ -9,9 +9,11 @@ import numpy as np
 from continuum_dyn.accuracy import tip_distance
 from continuum_dyn.experiments.bounds import Bound, bounds_of
 from continuum_dyn.integrators import Budget
-from continuum_dyn.scenario.building import load_expecting
 from continuum_dyn.scenario.expect import Expected
-from continuum_dyn.scenario.scenario import Method, MotionStudy, Scenario, Solver
+from continuum_dyn.scenario.reading import load_expecting
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import Run, simulate
 from continuum_dyn.trajectory import Trajectory
 from statics.effects import Extension

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from continuum_dyn.record import Log
-from continuum_dyn.scenario.building import parse
+from continuum_dyn.scenario.reading import parse
 from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import InputError, LogError
 

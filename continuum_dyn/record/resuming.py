@@ -6,7 +6,9 @@ from pydantic import ValidationError
 from continuum_dyn.begun import Begun
 from continuum_dyn.integrators import METHODS
 from continuum_dyn.record import Log
-from continuum_dyn.scenario.scenario import MotionStudy, Scenario, Solver
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics.errors import LogError
 from statics.outcome import Outcome
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from continuum_dyn.record.datasets import TEXT, whole_file, write_columns
 from continuum_dyn.record.log_format import FORMAT, FORMAT_VERSION, GROUPS
-from continuum_dyn.scenario.scenario import MotionStudy, Scenario
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from statics.equilibria import Equilibrium
 
 if TYPE_CHECKING:

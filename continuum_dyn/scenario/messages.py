@@ -11,7 +11,8 @@ from pydantic import BaseModel, ValidationError
 
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
-from continuum_dyn.scenario.scenario import STUDIES, Accuracy, Solver
+from continuum_dyn.scenario.solver import Accuracy, Solver
+from continuum_dyn.scenario.studies import STUDIES
 from continuum_dyn.scenario.tables import (
     ArmTable,
     BaseTable,
