@@ -8,7 +8,7 @@ import numpy as np
 
 from continuum_dyn import implicit_kernel, midpoint_kernel
 from continuum_dyn.motion_kernel import RECIPE
-from continuum_dyn.profiles import Span
+from continuum_dyn.scenario.intervals import Span
 from statics import codegen
 from statics.errors import InputError
 from statics.scene import Scene

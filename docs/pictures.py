@@ -10,9 +10,9 @@ from continuum_dyn import load_scenario, simulate
 from continuum_dyn.answers.ramp import ramp_answers
 from continuum_dyn.answers.settling import settling
 from continuum_dyn.experiments.cost import measure
+from continuum_dyn.experiments.reproduce import reproduce
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.reproduce import reproduce
-from continuum_dyn.views import log_plots, plots, ramp_plot, settling_plot
+from continuum_dyn.views.figures import log_plots, plots, ramp_plot, settling_plot
 
 HERE = Path(__file__).parent
 SCENARIOS = HERE.parent / "scenarios"

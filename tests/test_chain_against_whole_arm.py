@@ -21,7 +21,7 @@ from whole_arm import (
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.motion_kernel import RECIPE as MOTION
-from continuum_dyn.profiles import Span
+from continuum_dyn.scenario.intervals import Span
 from statics import codegen, equilibria
 from statics.arm import Cable
 from statics.equilibria import StaticSolver

@@ -11,7 +11,7 @@ from conftest import SCENARIOS
 from typer.testing import CliRunner
 
 from continuum_dyn.cli import app
-from continuum_dyn.commands.show import wrapped
+from continuum_dyn.commands.terminal.show import wrapped
 from continuum_dyn.experiments import cost
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})

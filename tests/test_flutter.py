@@ -14,11 +14,12 @@ from continuum_dyn.cli import app
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes, modes_at_rest, still
-from continuum_dyn.profiles import Constant, spans
 from continuum_dyn.record import read_log, write_log
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.profiles import Constant
+from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.stability import Growth, growth_about
-from continuum_dyn.study import Solver
 from statics import DiskLoad, Outcome, codegen
 
 # ---- Beck's column ----

@@ -12,15 +12,16 @@ from continuum_dyn import Scenario, load_scenario, simulate
 from continuum_dyn.cli import app
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import Budget
-from continuum_dyn.logged_motion import logged_motion
-from continuum_dyn.logged_scenario import logged_scenario
-from continuum_dyn.profiles import inputs_of, spans
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
+from continuum_dyn.record.logged_scenario import logged_scenario
+from continuum_dyn.record.resuming import logged_motion
 from continuum_dyn.record.writing import columns_of
+from continuum_dyn.scenario.intervals import inputs_of, spans
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
 from continuum_dyn.simulation.resumption import Begun
 from continuum_dyn.simulation.trajectory import Trajectory, trajectory_of
-from continuum_dyn.study import MotionStudy, Solver
 from statics import Outcome, codegen
 from statics.errors import LogError
 

@@ -14,7 +14,7 @@ from continuum_dyn.answers.last_change import last_change
 from continuum_dyn.answers.settling import FIGURES, Settling, settling
 from continuum_dyn.cli import app
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.views import settling_plot
+from continuum_dyn.views.figures import settling_plot
 from statics import InputError
 from statics.quantities import QUANTITIES
 

@@ -11,10 +11,11 @@ from conftest import SCENARIOS
 
 from continuum_dyn import Run, Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.integrators import Budget
-from continuum_dyn.profiles import Sine
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
+from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.scenario.solver import Accuracy
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
-from continuum_dyn.study import Accuracy, MotionStudy
 from statics import Outcome
 from statics.errors import LogError
 

@@ -11,11 +11,12 @@ from continuum_dyn.answers.last_change import LastChange, last_change
 from continuum_dyn.answers.ring_down import FEWEST_SAMPLES, RingDown, fit_ring_down
 from continuum_dyn.answers.step_figures import overshoot, rise_time, settling_time
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.logged_scenario import logged_scenario
 from continuum_dyn.modes import FEW_COORDINATES, Mode, check, modes, still
-from continuum_dyn.profiles import spans
 from continuum_dyn.record import Log
-from continuum_dyn.study import MotionStudy, Scenario
+from continuum_dyn.record.logged_scenario import logged_scenario
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import codegen
 from statics.errors import InputError
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.arguments import Folder
-from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
-from continuum_dyn.commands.pictures import save
-from continuum_dyn.commands.show import duration, length, make_folder, plain_table
+from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.terminal.pictures import save
+from continuum_dyn.commands.terminal.show import duration, length, make_folder, plain_table
 
 if TYPE_CHECKING:
     from continuum_dyn.answers.settling import Settling
@@ -36,7 +36,7 @@ def settle(
     """
     from continuum_dyn.answers.settling import FIGURES, settling
     from continuum_dyn.record import read_log
-    from continuum_dyn.views import settling_plot
+    from continuum_dyn.views.figures import settling_plot
 
     asked = parsed(assertions or [], FIGURES)
     read = read_log(log)

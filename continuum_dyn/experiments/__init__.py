@@ -1,1 +1,1 @@
-"""Many runs at once: from a scenario to what it costs."""
+"""Scenarios come in and are run many times; tables of what the runs show go out."""

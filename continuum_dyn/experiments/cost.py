@@ -14,12 +14,14 @@ import numpy as np
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.modes import rates
-from continuum_dyn.profiles import spans
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation.accuracy import tip_distance
 from continuum_dyn.simulation.integration import inspector, integrate, warm_up
 from continuum_dyn.simulation.mesh import between
 from continuum_dyn.simulation.trajectory import Trajectory
-from continuum_dyn.study import Method, MotionStudy, Scenario, Solver
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.exact_rod import RodError, exact_rod

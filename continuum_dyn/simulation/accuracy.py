@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.trajectory import Trajectory
-from continuum_dyn.study import Solver
 
 LOOSEST, TIGHTEST = 1e-2, 1e-13
 """Relative tolerances between which is searched."""

@@ -12,7 +12,10 @@ import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import Budget, Monitor, choose
-from continuum_dyn.profiles import Span, spans, spans_from
+from continuum_dyn.scenario.intervals import Span, spans, spans_from
+from continuum_dyn.scenario.scenario import MAX_STORED, Scenario
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy, StepResponseStudy
 from continuum_dyn.simulation.accuracy import to_accuracy
 from continuum_dyn.simulation.energy_balance import broken_ledger
 from continuum_dyn.simulation.integration import inspector, integrate, warm_up, with_step
@@ -23,7 +26,6 @@ from continuum_dyn.simulation.resumption import Begun
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.stability import Growth, judged, why_not_judged
-from continuum_dyn.study import MAX_STORED, MotionStudy, RampStudy, Scenario, Solver, StepResponseStudy
 from statics.arc_length import MOST_STEPS, follow
 from statics.arm import MAX_SEGMENTS
 from statics.equilibria import Equilibrium, StaticSolver

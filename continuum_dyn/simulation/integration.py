@@ -16,10 +16,10 @@ from scipy.integrate import OdeSolver
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Budget, Monitor, check
 from continuum_dyn.modes import fastest_frequency
-from continuum_dyn.profiles import Span, inputs_of, joined_spans
+from continuum_dyn.scenario.intervals import Span, inputs_of, joined_spans
+from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
-from continuum_dyn.study import Solver
 from statics.outcome import Outcome
 
 BRIEF = 1e-12

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.profiles import Span, inputs_of
-from continuum_dyn.study import Solver
+from continuum_dyn.scenario.intervals import Span, inputs_of
+from continuum_dyn.scenario.solver import Solver
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from continuum_dyn.record import Log
-from continuum_dyn.views.axis_units import Axis, axis
-from continuum_dyn.views.backbone import backbone
+from continuum_dyn.views.figures.axis_units import Axis, axis
+from continuum_dyn.views.figures.backbone import backbone
 from statics.errors import InputError
 
 ARC_POINTS = 12

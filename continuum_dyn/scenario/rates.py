@@ -4,7 +4,7 @@ import dataclasses
 from itertools import pairwise
 from math import inf, pi, sin
 
-from continuum_dyn.profiles import InPieces, Piece, Profile, Sine, straight
+from continuum_dyn.scenario.profiles import InPieces, Piece, Profile, Sine, straight
 from statics.errors import InputError
 
 JUMP, TURN = 1e-12, 1e-4

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from continuum_dyn.study import Method
+from continuum_dyn.scenario.solver import Method
 from statics.checked import STRICT, NonNegative, Positive
 from statics.outcome import Outcome
 

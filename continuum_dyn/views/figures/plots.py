@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from continuum_dyn.experiments.cost import Cost
+from continuum_dyn.experiments.reproduce import Rone2012, Shapes
 from continuum_dyn.modes import Mode, RestModes
-from continuum_dyn.reproduce import Rone2012, Shapes
-from continuum_dyn.views.backbone import backbone
+from continuum_dyn.views.figures.backbone import backbone
 from statics.equilibria import shape_of
 from statics.quantities import QUANTITIES
 

@@ -1,89 +1,22 @@
-"""What is asked of a scene: the kinds of study, the solver's settings, and the scenario that joins them."""
+"""The scenario: a scene, its inputs over time, a study, and the solver's settings."""
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import numpy as np
-from pydantic import Field
-from pydantic.dataclasses import dataclass
 
-from continuum_dyn.profiles import Constant, InPieces, Profile, lowest
-from continuum_dyn.smooth_motion import Rate, check_smooth
+from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, lowest
+from continuum_dyn.scenario.rates import Rate, check_smooth
+from continuum_dyn.scenario.solver import Accuracy, Solver
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy, Study
 from statics.arc_length import check_followable
-from statics.checked import STRICT, Positive
 from statics.effects import Effect
 from statics.errors import InputError
 from statics.scene import Scene
 
 MAX_STORED = 20_000_000
 """Most segments times samples that a log may hold."""
-MAX_SAMPLES = 10**12
-"""No log may hold so many; larger numbers are no numbers to reckon with."""
-
-
-@dataclass(frozen=True, config=STRICT)
-class EquilibriumStudy:
-    """Where the arm rests under its tensions."""
-
-    kind: Literal["equilibrium"] = "equilibrium"
-
-
-@dataclass(frozen=True, config=STRICT)
-class RampStudy:
-    """Where the arm rests under one set of tensions and load factors after another."""
-
-    path: Annotated[
-        Literal["stable", "arc_length"],
-        Field(
-            description='"stable": each is a stable equilibrium, searched from the one before; "arc_length": '
-            "the path of equilibria from the first one on, through its folds, stable or not"
-        ),
-    ] = "stable"
-    kind: Literal["ramp"] = "ramp"
-
-
-@dataclass(frozen=True, config=STRICT)
-class MotionStudy:
-    """How the arm moves from the equilibrium of the profiles' first tensions."""
-
-    duration: Annotated[Positive, Field(description="length of the motion, s")]
-    samples: Annotated[
-        int, Field(ge=2, le=MAX_SAMPLES, description="number of samples: uniform, with both ends included")
-    ] = 1001
-    static_path: Annotated[
-        bool, Field(description="whether the equilibrium of every sample's tensions is asked for as well")
-    ] = False
-    kind: Literal["motion"] = "motion"
-
-
-@dataclass(frozen=True, config=STRICT)
-class StepResponseStudy(MotionStudy):
-    """How the arm moves, and whether it has settled to the equilibrium of the last tensions.
-
-    Settled means: tip within ``settled_within`` of that equilibrium's, and slower than that distance per
-    second.
-    """
-
-    settled_within: Annotated[
-        Positive | None,
-        Field(
-            description="distance of the tip from its final equilibrium below which it has settled, m; "
-            "by default 1e-3 of the arm's length"
-        ),
-    ] = None
-    kind: Literal["step_response"] = "step_response"  # pyright: ignore[reportIncompatibleVariableOverride]
-
-
-Study = EquilibriumStudy | RampStudy | MotionStudy | StepResponseStudy
-STUDIES: dict[str, type[Study]] = {
-    "equilibrium": EquilibriumStudy,
-    "ramp": RampStudy,
-    "motion": MotionStudy,
-    "step_response": StepResponseStudy,
-}
-
-Method = Literal["auto", "chain", "explicit", "midpoint", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 
 
 def dissipated_by(scene: Scene) -> list[str]:
@@ -93,55 +26,6 @@ def dissipated_by(scene: Scene) -> list[str]:
 
 def _dissipates(scene: Scene, effect: Effect) -> bool:
     return effect.account == "dissipated_power" and any(map(np.any, effect.columns(scene.arm).values()))
-
-
-@dataclass(frozen=True, config=STRICT)
-class Solver:
-    """Integrator and its local error tolerances.
-
-    "chain" is the arm's own implicit method and "explicit" its like for motions that are not stiff: a step's
-    error may displace no node by more than ``rtol`` + ``atol`` times the arm's length. "midpoint" keeps the
-    energy of a scene without damping; it has no tolerances but a ``step`` (s), by default a twentieth of the
-    shortest period of the arm at the start or of its drive. "auto" decides between them by the motion's own
-    modes. For SciPy's methods ``rtol`` is relative and ``atol`` in rad for bend angles; elongations use it
-    times the segment's rest length, rates the same times the arm's natural frequency, energies times its
-    bending stiffness over that length. ``max_steps`` bounds what a motion may cost,
-    ``max_seconds`` what a motion or a ramp may.
-    """
-
-    method: Method = "auto"
-    rtol: Annotated[float, Field(ge=1e-14, lt=1)] = 1e-7
-    atol: Annotated[Positive, Field(description="absolute tolerance of an integrator")] = 1e-9
-    step: Positive | None = None
-    max_steps: Annotated[int, Field(ge=1, description="most steps that a motion may take")] = 10_000_000
-    max_seconds: Annotated[
-        Positive, Field(description="longest time that a motion may take to compute, s")
-    ] = 3600.0
-
-    def __post_init__(self) -> None:
-        if self.step is not None and self.method != "midpoint":
-            raise InputError(
-                f'[solver] step belongs to method = "midpoint"; "{self.method}" chooses its steps by rtol '
-                "and atol. Give those, or that method."
-            )
-
-    @property
-    def settings(self) -> dict[str, str | float]:
-        """The method and what it goes by, by name."""
-        if self.method == "midpoint":
-            return {"method": self.method} | ({} if self.step is None else {"step": self.step})
-        return {"method": self.method, "rtol": self.rtol, "atol": self.atol}
-
-
-@dataclass(frozen=True, config=STRICT)
-class Accuracy:
-    """How close the tip must be to the exact motion of the same segments.
-
-    The program chooses the tolerances, and checks. If it chooses the segments, too, the error is that
-    against the continuous arm.
-    """
-
-    tip: Annotated[Positive, Field(description="largest error of the tip over the samples, m")]
 
 
 @dataclasses.dataclass(frozen=True)

@@ -21,10 +21,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.expect import Expected
+from continuum_dyn.scenario.expect import Expected
+from continuum_dyn.scenario.scenario import Scenario, dissipated_by
 from continuum_dyn.simulation import Run
 from continuum_dyn.simulation.trajectory import Trajectory
-from continuum_dyn.study import Scenario, dissipated_by
 
 ROUNDING = 1e-14
 """Part of the largest energy that a step may lose to rounding."""

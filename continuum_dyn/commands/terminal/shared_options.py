@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.verbosity import quiet, verbose
+from continuum_dyn.commands.terminal.verbosity import quiet, verbose
 from statics.errors import InputError
 from statics.kernel_files import no_cache
 

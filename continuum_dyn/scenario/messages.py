@@ -10,8 +10,10 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.profiles import PROFILES
-from continuum_dyn.scenario_file import (
+from continuum_dyn.scenario.profiles import PROFILES
+from continuum_dyn.scenario.solver import Accuracy, Solver
+from continuum_dyn.scenario.studies import STUDIES
+from continuum_dyn.scenario.tables import (
     ArmTable,
     BaseTable,
     CableTable,
@@ -20,7 +22,6 @@ from continuum_dyn.scenario_file import (
     ScenarioFile,
     TableFile,
 )
-from continuum_dyn.study import STUDIES, Accuracy, Solver
 from statics.arm import Payload
 from statics.errors import did_you_mean
 

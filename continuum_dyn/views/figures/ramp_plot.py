@@ -8,7 +8,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from continuum_dyn.answers.loops import on_both_ways
 from continuum_dyn.answers.ramp import Path, RampAnswers
-from continuum_dyn.views.axis_units import Axis, axis
+from continuum_dyn.views.figures.axis_units import Axis, axis
 from statics.quantities import QUANTITIES
 
 MARKS = 12

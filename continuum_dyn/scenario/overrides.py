@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from textwrap import shorten
 from typing import Any, get_origin
 
-from continuum_dyn.scenario_file import ScenarioFile
-from continuum_dyn.toml_text import toml_text
+from continuum_dyn.scenario.tables import ScenarioFile
+from continuum_dyn.scenario.toml_text import toml_text
 from statics.checked import LONGEST_LINE
 from statics.errors import InputError, did_you_mean
 

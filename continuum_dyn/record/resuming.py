@@ -5,8 +5,10 @@ from pydantic import ValidationError
 
 from continuum_dyn.integrators import METHODS
 from continuum_dyn.record import Log
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation.resumption import Begun
-from continuum_dyn.study import MotionStudy, Scenario, Solver
 from statics.errors import LogError
 from statics.outcome import Outcome
 

@@ -6,14 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_dyn.bounds import Bound, bounds_of
-from continuum_dyn.expect import Expected
+from continuum_dyn.experiments.bounds import Bound, bounds_of
 from continuum_dyn.integrators import Budget
-from continuum_dyn.scenario import load_expecting
+from continuum_dyn.scenario.expect import Expected
+from continuum_dyn.scenario.reading import load_expecting
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import Run, simulate
 from continuum_dyn.simulation.accuracy import tip_distance
 from continuum_dyn.simulation.trajectory import Trajectory
-from continuum_dyn.study import Method, MotionStudy, Scenario, Solver
 from statics.effects import Extension
 from statics.errors import InputError
 from statics.outcome import Outcome

@@ -8,7 +8,7 @@ from shutil import get_terminal_size
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
-from continuum_dyn.commands.verbosity import shows_progress
+from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import LogError
 from statics.interruption import held
 

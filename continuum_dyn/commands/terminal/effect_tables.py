@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from continuum_dyn.commands.show import duration, length, mode_row, plain_table, with_status
+from continuum_dyn.commands.terminal.show import duration, length, mode_row, plain_table, with_status
 
 if TYPE_CHECKING:
     from continuum_dyn.experiments.cost import LeftOut
     from continuum_dyn.modes import RestModes
-    from continuum_dyn.study import Scenario
+    from continuum_dyn.scenario.scenario import Scenario
 
 LOWEST = 3
 """Modes that are told of."""

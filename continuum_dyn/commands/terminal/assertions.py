@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import typer
 
-from continuum_dyn.commands.show import plain_table
+from continuum_dyn.commands.terminal.show import plain_table
 from statics.errors import InputError, did_you_mean
 from statics.quantities import QUANTITIES
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from continuum_dyn.answers.settling import BANDS, Settling
-from continuum_dyn.views.axis_units import Axis, axis
+from continuum_dyn.views.figures.axis_units import Axis, axis
 
 SHADES = ("0.90", "0.80", "0.68")
 """Of the bands, widest first."""
