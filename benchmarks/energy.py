@@ -14,11 +14,12 @@ import numpy as np
 
 from continuum_dyn import load_scenario
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.integration import integrate, warm_up
 from continuum_dyn.integrators import Budget, Monitor
-from continuum_dyn.profiles import Span, Step, spans
-from continuum_dyn.study import Solver
-from continuum_dyn.trajectory import Trajectory
+from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.profiles import Step
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.simulation.integration import integrate, warm_up
+from continuum_dyn.simulation.trajectory import Trajectory
 from statics import Scene, equilibrium
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "step_response.toml"

@@ -15,9 +15,9 @@ from tempfile import TemporaryDirectory
 import psutil
 
 from continuum_dyn import Scenario, load_scenario, simulate
-from continuum_dyn.profiles import Sine
 from continuum_dyn.record import StreamedLog
-from continuum_dyn.study import MotionStudy
+from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.scenario.studies import MotionStudy
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "step_response.toml"
 DURATION, SAMPLES_PER_SECOND = 1500.0, 100

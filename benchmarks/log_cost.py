@@ -14,9 +14,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from continuum_dyn import Run, Scenario, load_scenario, simulate
-from continuum_dyn.profiles import Sine
 from continuum_dyn.record import StreamedLog
-from continuum_dyn.study import MotionStudy
+from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import Scene
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"

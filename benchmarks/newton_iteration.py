@@ -15,7 +15,7 @@ from numba import njit
 from scaling import SCENARIO, cut
 
 from continuum_dyn import load_scenario
-from continuum_dyn.cost import Motion
+from continuum_dyn.experiments.cost import Motion
 
 SEGMENTS = 64
 CALLS, REPEATS = 4000, 15

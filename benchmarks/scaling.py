@@ -10,9 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from continuum_dyn import Scenario, load_scenario
-from continuum_dyn.accuracy import tip_distance
-from continuum_dyn.cost import Motion
-from continuum_dyn.study import MotionStudy, Solver
+from continuum_dyn.experiments.cost import Motion
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.simulation.accuracy import tip_distance
 from statics import Scene
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "step_response.toml"

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from statics.support.lazy_names import loaded_when_asked_for
 
 if TYPE_CHECKING:
-    from continuum_dyn.scenario import load_scenario
+    from continuum_dyn.scenario.reading import load_scenario
+    from continuum_dyn.scenario.scenario import Scenario
     from continuum_dyn.simulation import Run, simulate
-    from continuum_dyn.study import Scenario
-    from continuum_dyn.trajectory import Trajectory
+    from continuum_dyn.simulation.trajectory import Trajectory
 
 __all__ = ["Run", "Scenario", "Trajectory", "load_scenario", "simulate"]
 

@@ -27,14 +27,14 @@ from continuum_dyn.commands import (
     settle,
     validate,
 )
-from continuum_dyn.commands.shared_options import (
+from continuum_dyn.commands.terminal.extras import extras_named
+from continuum_dyn.commands.terminal.shared_options import (
     Quiet,
     Verbose,
     WithoutCache,
     with_shared_options,
 )
-from continuum_dyn.commands.show import wrapped
-from continuum_dyn.extras import extras_named
+from continuum_dyn.commands.terminal.show import wrapped
 from statics.errors import ContinuumError
 
 BAD_INPUT = 2

@@ -8,8 +8,9 @@ from scipy.optimize import linear_sum_assignment
 from scipy.sparse.linalg import LinearOperator, eigs
 
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.profiles import Constant, Span, spans
-from continuum_dyn.study import Scenario
+from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.profiles import Constant
+from continuum_dyn.scenario.scenario import Scenario
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
 from statics.outcome import Outcome

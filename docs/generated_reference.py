@@ -14,14 +14,16 @@ from sphinx.util.docutils import SphinxDirective
 import continuum_dyn.effects
 import continuum_dyn.equations.dynamics
 import continuum_dyn.modes
-import continuum_dyn.profiles
-import continuum_dyn.study
+import continuum_dyn.scenario.intervals
+import continuum_dyn.scenario.profiles
+import continuum_dyn.scenario.solver
+import continuum_dyn.scenario.studies
 import statics
 from continuum_dyn.cli import app
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.profiles import PROFILES
-from continuum_dyn.schema import json_schema
-from continuum_dyn.study import STUDIES
+from continuum_dyn.scenario.profiles import PROFILES
+from continuum_dyn.scenario.schema import json_schema
+from continuum_dyn.scenario.studies import STUDIES
 from statics.effects import STATIC_EFFECTS
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
@@ -265,8 +267,10 @@ PUBLIC: dict[Any, Iterable[str]] = {
     continuum_dyn.effects: [
         effect.__name__ for name, effect in EFFECTS.items() if name not in STATIC_EFFECTS
     ],
-    continuum_dyn.profiles: [*(profile.__name__ for profile in PROFILES.values()), "Span", "spans"],
-    continuum_dyn.study: [*(study.__name__ for study in STUDIES.values()), "Solver", "Accuracy"],
+    continuum_dyn.scenario.profiles: [profile.__name__ for profile in PROFILES.values()],
+    continuum_dyn.scenario.intervals: ["Span", "spans"],
+    continuum_dyn.scenario.studies: [study.__name__ for study in STUDIES.values()],
+    continuum_dyn.scenario.solver: ["Solver", "Accuracy"],
     continuum_dyn.equations.dynamics: ["Dynamics", "Observation"],
     continuum_dyn.modes: ["modes_at_rest", "RestModes", "Mode"],
 }

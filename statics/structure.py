@@ -72,7 +72,7 @@ def form_of(effect: type[Effect]) -> Effect:
 
     A field that ``pairs`` reads would become a number in a kernel that is kept for every number.
     """
-    names = {field.name for field in fields(effect)} if hasattr(effect, "__dataclass_fields__") else set()
+    names = frozenset(getattr(effect, "__dataclass_fields__", ()))
 
     def refuse(self: Any, name: str) -> Any:
         if name in names:

@@ -23,11 +23,11 @@ import numpy as np
 
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.integrators import Budget
-from continuum_dyn.log_comparison import compare
-from continuum_dyn.logged_motion import logged_motion
-from continuum_dyn.logged_scenario import logged_scenario
 from continuum_dyn.record import read_log, write_log
+from continuum_dyn.record.comparison import compare
+from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.record.reading import departures_of
+from continuum_dyn.record.resuming import logged_motion
 from statics.errors import LogError
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"

@@ -22,8 +22,7 @@ from continuum_dyn.effects import (
     QuadraticDrag,
     RotaryInertia,
 )
-from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.profiles import Span
+from continuum_dyn.scenario.intervals import Span
 from statics import (
     Arm,
     Base,

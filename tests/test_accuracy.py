@@ -7,9 +7,9 @@ import pytest
 from conftest import SCENARIOS, motion
 
 from continuum_dyn import load_scenario, simulate
-from continuum_dyn.accuracy import LOOSEST, tip_distance
 from continuum_dyn.integrators import Budget
-from continuum_dyn.study import Accuracy, Method, Solver
+from continuum_dyn.scenario.solver import Accuracy, Method, Solver
+from continuum_dyn.simulation.accuracy import LOOSEST, tip_distance
 from statics import InputError, Outcome
 
 TIGHT = Solver("chain", rtol=1e-12, atol=1e-15)

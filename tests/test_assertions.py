@@ -2,7 +2,7 @@
 
 import pytest
 
-from continuum_dyn.commands.assertions import judged, parsed
+from continuum_dyn.commands.terminal.assertions import judged, parsed
 from statics import InputError
 
 FIGURES = {"settling_time_2": 0.3, "static_gap": 1e-8, "frequency": None}

@@ -16,25 +16,15 @@ from whole_arm import difference_matrix
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping
-from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.integration import inspector, integrate
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes
-from continuum_dyn.profiles import (
-    Constant,
-    InPieces,
-    Profile,
-    Ramp,
-    Sine,
-    SmoothRamp,
-    Span,
-    Step,
-    Table,
-    spans,
-)
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.smooth_motion import Rate, check_smooth
-from continuum_dyn.study import EquilibriumStudy, MotionStudy, Solver, StepResponseStudy
+from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, Ramp, Sine, SmoothRamp, Step, Table
+from continuum_dyn.scenario.rates import Rate, check_smooth
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, StepResponseStudy
+from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.views.playback.arm import moving_parts
 from continuum_dyn.views.playback.measures import measures_of
 from continuum_dyn.views.playback.story import story_of

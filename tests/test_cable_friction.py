@@ -11,8 +11,9 @@ from whole_cables import WholeCables
 
 from continuum_dyn import Scenario, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
-from continuum_dyn.profiles import Table
-from continuum_dyn.study import Solver, StepResponseStudy
+from continuum_dyn.scenario.profiles import Table
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import StepResponseStudy
 from statics import (
     Arm,
     Bending,

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import whole_arm
-from continuum_dyn.equations.in_motion import RECIPE as MOTION
 from whole_arm import (
     bare_scene,
     difference_matrix,
@@ -21,7 +20,8 @@ from whole_arm import (
 )
 
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.profiles import Span
+from continuum_dyn.equations.families import RECIPE as MOTION
+from continuum_dyn.scenario.intervals import Span
 from statics import codegen, equilibria
 from statics.arm import Cable
 from statics.derivation.at_rest import RECIPE as STATICS

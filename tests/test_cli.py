@@ -10,9 +10,9 @@ import pytest
 from conftest import SCENARIOS
 from typer.testing import CliRunner
 
-from continuum_dyn import cost
 from continuum_dyn.cli import app
-from continuum_dyn.commands.show import wrapped
+from continuum_dyn.commands.terminal.show import wrapped
+from continuum_dyn.experiments import cost
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
 STEP = str(SCENARIOS / "step_response.toml")

@@ -11,10 +11,12 @@ import pytest
 from conftest import SCENARIOS
 from typer.testing import CliRunner
 
-from continuum_dyn import Scenario, cost, load_scenario
+from continuum_dyn import Scenario, load_scenario
 from continuum_dyn.cli import app
-from continuum_dyn.study import Method, MotionStudy
-from continuum_dyn.views import plots
+from continuum_dyn.experiments import cost
+from continuum_dyn.scenario.solver import Method
+from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.views.figures import plots
 from statics import InputError, Payload
 
 

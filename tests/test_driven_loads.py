@@ -7,13 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import SCENARIOS, motion
-from continuum_dyn.equations.in_motion import RECIPE, write
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.equations.families import RECIPE, write
 from continuum_dyn.modes import modes_at_rest
-from continuum_dyn.profiles import Constant, Profile, Sine, Step, Table, spans
-from continuum_dyn.study import MotionStudy, RampStudy, Solver
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step, Table
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy
 from statics import DiskLoad, DiskLoads, InputError, Outcome, Scene, codegen, equilibrium
 
 

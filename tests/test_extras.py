@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from continuum_dyn import views
 from continuum_dyn.cli import app
-from continuum_dyn.extras import EXTRAS
+from continuum_dyn.commands.terminal.extras import EXTRAS
 from continuum_dyn.record import read_log
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})

@@ -12,13 +12,14 @@ from typer.testing import CliRunner
 from continuum_dyn import simulate
 from continuum_dyn.cli import app
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.integration import inspector, integrate
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes, modes_at_rest, still
-from continuum_dyn.profiles import Constant, spans
 from continuum_dyn.record import read_log, write_log
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.profiles import Constant
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.stability import Growth, growth_about
-from continuum_dyn.study import Solver
 from statics import DiskLoad, Outcome, codegen
 
 # ---- Beck's column ----
@@ -125,7 +126,9 @@ def test_interrupted_while_stability_is_judged_it_keeps_the_equilibrium(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its kernels may have to be compiled first, which takes long."""
-    at_call("continuum_dyn.simulation:_judged", 1, lambda: raise_signal(SIGINT), monkeypatch.setattr)
+    at_call(
+        "continuum_dyn.simulation.in_motion:_judged", 1, lambda: raise_signal(SIGINT), monkeypatch.setattr
+    )
     run = simulate(edited(JET, tmp_path, ALONG, EQUILIBRIUM, CONSTANT))
     assert (run.outcome, len(run.equilibria)) == (Outcome.INTERRUPTED, 1)
     assert run.message == "interrupted after 1 of 1 points, of unknown stability"

@@ -10,8 +10,9 @@ from scipy.optimize import root
 
 from continuum_dyn import Run, load_scenario, simulate
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.study import RampStudy, Scenario
-from continuum_dyn.views import log_plots
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import RampStudy
+from continuum_dyn.views.figures import log_plots
 from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path, tension_ramp
 
 SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"

@@ -16,8 +16,9 @@ from continuum_dyn import implicit_kernel, load_scenario, motion_kernel, simulat
 from continuum_dyn.effects import Inertia, MaterialDamping
 from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import choose
-from continuum_dyn.profiles import spans
-from continuum_dyn.study import MotionStudy, Solver
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import (
     Arm,
     Bending,

@@ -12,12 +12,12 @@ from conftest import SCENARIOS
 from typer.testing import CliRunner
 
 from continuum_dyn import simulate
-from continuum_dyn.bounds import bounds_of, energies
 from continuum_dyn.cli import app
-from continuum_dyn.hard_cases import HardCase, judge, load_cases
+from continuum_dyn.experiments.bounds import bounds_of, energies
+from continuum_dyn.experiments.hard_cases import HardCase, judge, load_cases
 from continuum_dyn.integrators import METHODS
 from continuum_dyn.record import write_log
-from continuum_dyn.study import Method
+from continuum_dyn.scenario.solver import Method
 from statics import InputError, Outcome
 
 HARD = SCENARIOS / "hard"

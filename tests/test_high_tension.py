@@ -8,8 +8,8 @@ from conftest import UPPER, rone2012
 from random_scenes import interpreted
 
 from continuum_dyn import Scenario, simulate
-from continuum_dyn.profiles import Constant
-from continuum_dyn.study import EquilibriumStudy, RampStudy
+from continuum_dyn.scenario.profiles import Constant
+from continuum_dyn.scenario.studies import EquilibriumStudy, RampStudy
 from statics import Arm, Bending, Cables, Extension, Outcome, Scene, StaticSolver
 from statics.effects import Effect
 from statics.ramp import limit_on_the_way, ramp

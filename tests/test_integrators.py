@@ -13,8 +13,10 @@ from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import ChainSolver, choose
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, SDIRK4, Tableau
-from continuum_dyn.profiles import Sine, Span, Step, spans
-from continuum_dyn.study import Method, MotionStudy, Solver
+from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.profiles import Sine, Step
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import Scene, equilibrium
 
 

@@ -64,13 +64,19 @@ def check(found: Interrupted, finished: tuple[Outcome, ...] = ()) -> None:
     [
         ("tension_ramp", "statics.ramp:_continued", 2, "interrupted", "after 3 of 6 points"),
         ("snap_through", "statics.arc_length:_Follower._step", 5, "interrupted", "interrupted at"),
-        ("step_response", "continuum_dyn.scenario:_build", 1, None, ""),
+        ("step_response", "continuum_dyn.scenario.reading:build", 1, None, ""),
         ("step_response", "statics.equilibria:StaticSolver.solve", 2, "interrupted", "before the motion"),
-        ("step_response", "continuum_dyn.simulation:_moved", 1, "interrupted", "interrupted at t ="),
-        ("step_response", "continuum_dyn.simulation:_end", 1, "settled", ""),
+        (
+            "step_response",
+            "continuum_dyn.simulation.in_motion:_moved",
+            1,
+            "interrupted",
+            "interrupted at t =",
+        ),
+        ("step_response", "continuum_dyn.simulation.in_motion:_end", 1, "settled", ""),
         (
             "slow_ramp",
-            "continuum_dyn.simulation:_static_path",
+            "continuum_dyn.simulation.in_motion:_static_path",
             1,
             "interrupted",
             "after the motion, 0 points",

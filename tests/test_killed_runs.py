@@ -16,10 +16,10 @@ import pytest
 from conftest import SCENARIOS
 
 from continuum_dyn import Run, load_scenario, simulate
-from continuum_dyn.profiles import Sine
 from continuum_dyn.record import Log, StreamedLog, read_log
 from continuum_dyn.record.log_format import GROUPS, UNFINISHED
-from continuum_dyn.study import MotionStudy
+from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.scenario.studies import MotionStudy
 from statics.errors import LogError
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGKILL")

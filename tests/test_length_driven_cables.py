@@ -8,8 +8,8 @@ import pytest
 from scipy.optimize import brentq
 
 from continuum_dyn import load_scenario, simulate
-from continuum_dyn.profiles import Step
-from continuum_dyn.study import Solver
+from continuum_dyn.scenario.profiles import Step
+from continuum_dyn.scenario.solver import Solver
 from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Outcome, Scene, codegen
 from statics.arc_length import follow
 from statics.equilibria import Equilibrium, StaticSolver

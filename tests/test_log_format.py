@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.cli import app
 from continuum_dyn.integrators import Budget
-from continuum_dyn.log_comparison import compare
 from continuum_dyn.record import read_log, write_log
+from continuum_dyn.record.comparison import compare
 from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES
 from statics.errors import LogError
 from statics.quantities import QUANTITIES

@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 
 from continuum_dyn.cli import app
 from continuum_dyn.record import Log
-from continuum_dyn.views import log_plots
-from continuum_dyn.views.axis_units import axis
+from continuum_dyn.views.figures import log_plots
+from continuum_dyn.views.figures.axis_units import axis
 from statics import InputError
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})

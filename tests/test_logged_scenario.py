@@ -7,10 +7,10 @@ import pytest
 from conftest import SCENARIOS, rone2012
 
 from continuum_dyn import Run, Scenario, load_scenario
-from continuum_dyn.logged_scenario import logged_scenario
-from continuum_dyn.profiles import Constant
 from continuum_dyn.record import Log, read_log, write_log
-from continuum_dyn.study import EquilibriumStudy
+from continuum_dyn.record.logged_scenario import logged_scenario
+from continuum_dyn.scenario.profiles import Constant
+from continuum_dyn.scenario.studies import EquilibriumStudy
 from statics import Outcome
 from statics.errors import LogError
 

@@ -6,9 +6,10 @@ import pytest
 from conftest import motion, moving, rone2012
 
 from continuum_dyn import Scenario, Trajectory
-from continuum_dyn.accuracy import tip_distance
-from continuum_dyn.profiles import Step
-from continuum_dyn.study import Method, MotionStudy, Solver
+from continuum_dyn.scenario.profiles import Step
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.simulation.accuracy import tip_distance
 from statics import Each, InputError, Scene
 
 TIP = 3e-3

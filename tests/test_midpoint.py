@@ -28,9 +28,11 @@ from continuum_dyn.effects import MaterialDamping
 from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import MidpointSolver
 from continuum_dyn.modes import fastest_frequency
-from continuum_dyn.profiles import Constant, Profile, Sine, Span, Step, spans
 from continuum_dyn.record import write_log
-from continuum_dyn.study import Accuracy, MotionStudy, Solver
+from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step
+from continuum_dyn.scenario.solver import Accuracy, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import InputError, Outcome, Scene, codegen, equilibrium
 
 FIRST_PERIOD = 1 / 23.24

@@ -8,8 +8,9 @@ from conftest import SCENARIOS, motion, moving, rone2012
 
 from continuum_dyn import Scenario, load_scenario, simulate
 from continuum_dyn.integrators import Budget
-from continuum_dyn.profiles import Constant, Ramp, Sine, Step
-from continuum_dyn.study import Method, MotionStudy, Solver, StepResponseStudy
+from continuum_dyn.scenario.profiles import Constant, Ramp, Sine, Step
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy, StepResponseStudy
 from statics import Bending, Cables, Gravity, Outcome, Scene, equilibrium
 
 TIGHT = Solver("Radau", rtol=1e-9, atol=1e-12)

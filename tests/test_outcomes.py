@@ -13,8 +13,10 @@ from continuum_dyn import Run, Scenario, simulate
 from continuum_dyn.effects import MaterialDamping
 from continuum_dyn.equations.dynamics import Dynamics, Observation
 from continuum_dyn.integrators import METHODS, Budget, Monitor
-from continuum_dyn.profiles import Constant, Profile, Span, Step
-from continuum_dyn.study import Method, MotionStudy, RampStudy, Solver, StepResponseStudy
+from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.profiles import Constant, Profile, Step
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy, StepResponseStudy
 from statics import InputError, Outcome, Scene
 
 

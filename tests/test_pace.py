@@ -9,8 +9,9 @@ from conftest import SCENARIOS, edited
 
 from continuum_dyn import load_scenario
 from continuum_dyn.answers.pace import at_pace
-from continuum_dyn.profiles import inputs_of, spans
-from continuum_dyn.study import MotionStudy, Scenario
+from continuum_dyn.scenario.intervals import inputs_of, spans
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import InputError
 
 TIMES = np.array([0.0, 0.013, 0.05, 0.1, 0.17, 0.31, 0.4999])

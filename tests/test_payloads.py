@@ -13,9 +13,9 @@ from whole_arm import difference_matrix, full_scene, gradient, random_state, rel
 
 from continuum_dyn import Scenario, midpoint_kernel, motion_kernel, simulate
 from continuum_dyn.effects import MassDamping
-from continuum_dyn.equations.dynamics import LEDGER
-from continuum_dyn.profiles import Step
-from continuum_dyn.study import MotionStudy, Solver, StepResponseStudy
+from continuum_dyn.scenario.profiles import Step
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy, StepResponseStudy
 from statics import Arm, Bending, Gravity, InputError, Outcome, Payload, Scene, codegen, equilibrium
 from statics import statics_kernel as at_rest
 from statics.judges.exact_rod import exact_rod

@@ -12,7 +12,8 @@ from pydantic import ValidationError
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.integrators import METHODS, ChainSolver
-from continuum_dyn.profiles import (
+from continuum_dyn.scenario.intervals import joined_spans, spans
+from continuum_dyn.scenario.profiles import (
     TIME_RESOLUTION,
     Constant,
     Profile,
@@ -21,12 +22,11 @@ from continuum_dyn.profiles import (
     SmoothRamp,
     Step,
     Table,
-    joined_spans,
     lowest,
-    spans,
 )
-from continuum_dyn.smooth_motion import Rate
-from continuum_dyn.study import Method, MotionStudy, Solver
+from continuum_dyn.scenario.rates import Rate
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import InputError
 
 

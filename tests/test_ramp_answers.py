@@ -14,9 +14,9 @@ from continuum_dyn.answers.pace import at_pace
 from continuum_dyn.answers.ramp import FIGURES, RampAnswers, ramp_answers
 from continuum_dyn.answers.ramp_rates import measured
 from continuum_dyn.cli import app
-from continuum_dyn.logged_scenario import logged_scenario
 from continuum_dyn.record import Log, read_log, write_log
-from continuum_dyn.views import ramp_plot
+from continuum_dyn.record.logged_scenario import logged_scenario
+from continuum_dyn.views.figures import ramp_plot
 from statics import InputError
 from statics.quantities import QUANTITIES
 

@@ -11,9 +11,9 @@ from conftest import SCENARIOS, moving, rone2012
 
 from continuum_dyn import Run, Scenario, load_scenario, simulate
 from continuum_dyn.integrators import Budget
-from continuum_dyn.profiles import Step
 from continuum_dyn.record import FORMAT_VERSION, read_log, write_log
-from continuum_dyn.study import MotionStudy, RampStudy
+from continuum_dyn.scenario.profiles import Step
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy
 from statics import Outcome, Scene
 from statics.errors import LogError
 from statics.quantities import QUANTITIES

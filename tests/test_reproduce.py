@@ -15,14 +15,14 @@ from typer.testing import CliRunner
 from whole_arm import difference_matrix, relative_error
 
 from continuum_dyn.cli import app
-from continuum_dyn.reproduce import (
+from continuum_dyn.experiments.reproduce import (
     TABLE_2_FINITE_ELEMENTS,
     TABLE_2_VIRTUAL_WORK,
     Rone2012,
     reproduce,
     with_core_spread,
 )
-from continuum_dyn.views import plots
+from continuum_dyn.views.figures import plots
 from statics import Arm, Equilibrium, Extension, InputError, Scene, equilibrium
 from statics.judges.exact_rod import RodShape
 from statics.judges.rone2012 import PrintedArm, PrintedError, jacobians, local_jacobians, local_poses, poses

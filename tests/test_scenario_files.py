@@ -9,8 +9,9 @@ from conftest import SCENARIOS
 
 from continuum_dyn import load_scenario
 from continuum_dyn.integrators import METHODS
-from continuum_dyn.profiles import Table
-from continuum_dyn.study import Method, RampStudy
+from continuum_dyn.scenario.profiles import Table
+from continuum_dyn.scenario.solver import Method
+from continuum_dyn.scenario.studies import RampStudy
 from statics import InputError
 
 GOOD = (SCENARIOS / "step_response.toml").read_text()

@@ -7,7 +7,7 @@ import pytest
 from conftest import SCENARIOS, motion
 
 from continuum_dyn import load_scenario
-from continuum_dyn.study import MotionStudy
+from continuum_dyn.scenario.studies import MotionStudy
 
 INTERVALS = 4000
 DURATION = 0.1

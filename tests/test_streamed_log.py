@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from conftest import SCENARIOS
 
-from continuum_dyn import Run, Scenario, Trajectory, load_scenario, samples, simulate
+from continuum_dyn import Run, Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.integrators import Budget
-from continuum_dyn.profiles import Sine
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
-from continuum_dyn.study import Accuracy, MotionStudy
+from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.scenario.solver import Accuracy
+from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.simulation import samples
 from statics import Outcome
 from statics.errors import LogError
 

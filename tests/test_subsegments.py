@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from conftest import SCENARIOS, UPPER, motion, moving, rone2012
 
-from continuum_dyn import Scenario, Trajectory, cost, load_scenario, simulate
-from continuum_dyn.accuracy import tip_distance
+from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
+from continuum_dyn.experiments import cost
 from continuum_dyn.integrators import Budget
-from continuum_dyn.mesh import between, extrapolated, to_mesh
-from continuum_dyn.profiles import Sine, Step
-from continuum_dyn.study import Accuracy, Method, MotionStudy, Solver
+from continuum_dyn.scenario.profiles import Sine, Step
+from continuum_dyn.scenario.solver import Accuracy, Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.simulation.accuracy import tip_distance
+from continuum_dyn.simulation.mesh import between, extrapolated, to_mesh
 from statics import Arm, Extension, InputError, Outcome, Scene, equilibrium
 from statics.derivation.at_rest import write
 from statics.judges.exact_rod import exact_rod

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 import whole_arm
-from continuum_dyn.equations.in_motion import RECIPE
 from one_of_each import ONE_OF_EACH
 from whole_arm import gradient, random_state, relative_error
 from whole_cables import WholeCables
@@ -22,6 +21,7 @@ from continuum_dyn.effects import (
     QuadraticDrag,
     RotaryInertia,
 )
+from continuum_dyn.equations.families import RECIPE
 from statics import (
     Arm,
     Base,

@@ -12,10 +12,11 @@ import numpy as np
 
 from continuum_dyn import load_scenario
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Monitor
-from continuum_dyn.profiles import spans
-from continuum_dyn.study import MotionStudy, Solver
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.simulation.integration import inspector, integrate, warm_up
 from statics import equilibrium
 from statics.effects import Gravity
 

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_dyn.profiles import SAME, Span, spans
-from continuum_dyn.study import Scenario
+from continuum_dyn.scenario.intervals import SAME, Span, spans
+from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import InputError
 
 

@@ -3,8 +3,9 @@
 from dataclasses import replace
 from typing import Any
 
-from continuum_dyn.profiles import Constant, Profile, Ramp, Sine, SmoothRamp, Step, Table
-from continuum_dyn.study import MotionStudy, Scenario
+from continuum_dyn.scenario.profiles import Constant, Profile, Ramp, Sine, SmoothRamp, Step, Table
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from statics.errors import InputError
 
 

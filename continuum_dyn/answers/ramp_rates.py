@@ -9,8 +9,9 @@ import numpy as np
 from continuum_dyn.answers.lag import gap, rate_within
 from continuum_dyn.answers.pace import at_pace
 from continuum_dyn.answers.ramp import RampAnswers, RateLag
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import simulate
-from continuum_dyn.study import MotionStudy, Scenario
 from statics.errors import InputError
 
 PACES = (0.25, 0.5, 1.0, 2.0, 4.0)

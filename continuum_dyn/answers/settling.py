@@ -11,11 +11,12 @@ from continuum_dyn.answers.last_change import LastChange, last_change
 from continuum_dyn.answers.ring_down import FEWEST_SAMPLES, RingDown, fit_ring_down
 from continuum_dyn.answers.step_figures import overshoot, rise_time, settling_time
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.logged_scenario import logged_scenario
 from continuum_dyn.modes import Mode, check, modes, still
-from continuum_dyn.profiles import spans
 from continuum_dyn.record import Log
-from continuum_dyn.study import MotionStudy, Scenario
+from continuum_dyn.record.logged_scenario import logged_scenario
+from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from statics.errors import InputError
 
 BANDS = {"settling_time_5": 0.05, "settling_time_2": 0.02, "settling_time_1": 0.01}
@@ -49,7 +50,7 @@ class Settling:
     missing: dict[str, str]
 
 
-def settling(log: Log) -> Settling:
+def rest_gap(log: Log) -> Settling:
     """How the motion of a log settles.
 
     Times count from the beginning of the last change of the inputs; overshoot and bands are parts of the
@@ -81,7 +82,7 @@ def settling(log: Log) -> Settling:
 
 def _motion_times(log: Log) -> np.ndarray:
     if not log.trajectory or len(log.trajectory["time"]) < 2:
-        raise InputError(f"{log.path}: nothing moves in this log; settling is asked of motions.")
+        raise InputError(f"{log.path}: nothing moves in this log; rest_gap is asked of motions.")
     if "time" not in log.equilibria or len(log.equilibria["time"]) < 2:
         raise InputError(f"{log.path}: the last equilibrium was not found; there is nothing to settle to.")
     return log.trajectory["time"]

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from continuum_dyn.commands.arguments import Folder, Overrides, ScenarioFile
-from continuum_dyn.commands.show import length, make_folder, plain_table, with_status
+from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
+from continuum_dyn.commands.terminal.show import length, make_folder, plain_table, with_status
 from statics.support.interruption import held
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from continuum_dyn.cost import Cost, MeshPrice
+    from continuum_dyn.experiments.cost import Cost, MeshPrice
 
 
 def cost(
@@ -29,10 +29,10 @@ def cost(
     of its effects; prints error, time and work, and the cheapest way to each error. Writes DIR/NAME_cost.csv,
     NAME_cost_mesh.csv, NAME_cost.h5 and NAME_cost.png.
     """
-    from continuum_dyn.cost import measure
-    from continuum_dyn.record import write_cost
-    from continuum_dyn.scenario import load_scenario
-    from continuum_dyn.views import plots
+    from continuum_dyn.experiments.cost import measure
+    from continuum_dyn.experiments.cost_file import write_cost
+    from continuum_dyn.scenario.reading import load_scenario
+    from continuum_dyn.views.figures import plots
 
     scenario = load_scenario(file, overrides or ())
     make_folder(out)

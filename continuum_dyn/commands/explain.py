@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.arguments import Overrides, ScenarioFile
+from continuum_dyn.commands.terminal.arguments import Overrides, ScenarioFile
 from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
@@ -31,8 +31,12 @@ def explain(
     accuracy that is asked for, and what time they cost. The first time each of these is compiled, which
     takes up to half a minute.
     """
-    from continuum_dyn.commands.effects import show_additions, show_modes, show_what_to_leave_out
-    from continuum_dyn.scenario import load_scenario
+    from continuum_dyn.commands.terminal.effect_tables import (
+        show_additions,
+        show_modes,
+        show_what_to_leave_out,
+    )
+    from continuum_dyn.scenario.reading import load_scenario
 
     scenario = load_scenario(file, overrides or ())
     scene = scenario.scene
@@ -82,8 +86,8 @@ def _modes(scenario: Any) -> Any:
 def _print_method(scenario: Any) -> None:
     from continuum_dyn.equations.dynamics import Dynamics
     from continuum_dyn.integrators import choose
-    from continuum_dyn.profiles import spans
-    from continuum_dyn.study import MotionStudy
+    from continuum_dyn.scenario.intervals import spans
+    from continuum_dyn.scenario.studies import MotionStudy
     from statics.equilibria import StaticSolver
 
     if not isinstance(scenario.study, MotionStudy) or scenario.solver.method != "auto":

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.show import duration, length, with_status
+from continuum_dyn.commands.terminal.show import duration, length, with_status
 from statics.errors import InputError, LogError
 
 if TYPE_CHECKING:
-    from continuum_dyn.hard_cases import Verdict
+    from continuum_dyn.experiments.hard_cases import Verdict
 
 PATIENCE = 1.0
 """Seconds for a method that does not claim a case."""
@@ -44,7 +44,7 @@ def hard(
     every one of them. Prints a table, and what broke a bound. Exit status: 0 all bounds are kept, 1 one is
     not, 2 bad input.
     """
-    from continuum_dyn.hard_cases import judge, load_cases
+    from continuum_dyn.experiments.hard_cases import judge, load_cases
     from continuum_dyn.integrators import METHODS
 
     if out is not None and out.suffix not in SUFFIXES:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from continuum_dyn.commands.show import duration, length, plain_table
+from continuum_dyn.commands.terminal.show import duration, length, plain_table
 
 if TYPE_CHECKING:
     import numpy as np

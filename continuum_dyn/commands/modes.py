@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from continuum_dyn.commands.arguments import Folder, Overrides, ScenarioFile
-from continuum_dyn.commands.show import make_folder, mode_row, plain_table
+from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
+from continuum_dyn.commands.terminal.show import make_folder, mode_row, plain_table
 from statics.support.interruption import held
 
 if TYPE_CHECKING:
@@ -41,8 +41,8 @@ def modes(
     and NAME_modes.png, with the first six.
     """
     from continuum_dyn.modes import modes_at_rest
-    from continuum_dyn.scenario import load_scenario
-    from continuum_dyn.views import plots
+    from continuum_dyn.scenario.reading import load_scenario
+    from continuum_dyn.views.figures import plots
 
     scenario = load_scenario(file, overrides or ())
     make_folder(out)

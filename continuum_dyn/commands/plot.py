@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from continuum_dyn.commands.pictures import save
-from continuum_dyn.commands.show import make_folder
+from continuum_dyn.commands.terminal.pictures import save
+from continuum_dyn.commands.terminal.show import make_folder
 from statics.errors import InputError, did_you_mean
 
 SUFFIXES = (".png", ".svg", ".pdf")
@@ -39,7 +39,7 @@ def plot(
     black and white.
     """
     from continuum_dyn.record import read_log
-    from continuum_dyn.views import log_plots
+    from continuum_dyn.views.figures import log_plots
 
     for part in parts or []:
         if part not in log_plots.PARTS:

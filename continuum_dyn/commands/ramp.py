@@ -6,10 +6,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.arguments import Folder
-from continuum_dyn.commands.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
-from continuum_dyn.commands.pictures import save
-from continuum_dyn.commands.show import duration, energy, length, make_folder, plain_table, with_status
+from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.terminal.pictures import save
+from continuum_dyn.commands.terminal.show import (
+    duration,
+    energy,
+    length,
+    make_folder,
+    plain_table,
+    with_status,
+)
 from statics.errors import InputError
 
 if TYPE_CHECKING:
@@ -39,9 +46,9 @@ def ramp(
     """
     from continuum_dyn.answers.ramp import FIGURES, ramp_answers
     from continuum_dyn.answers.ramp_rates import measured
-    from continuum_dyn.logged_scenario import logged_scenario
     from continuum_dyn.record import read_log
-    from continuum_dyn.views import ramp_plot
+    from continuum_dyn.record.logged_scenario import logged_scenario
+    from continuum_dyn.views.figures import ramp_plot
 
     asked = parsed(assertions or [], FIGURES)
     if not 0.0 < error < float("inf"):

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.arguments import Folder
-from continuum_dyn.commands.show import make_folder, plain_table
+from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.show import make_folder, plain_table
 from statics.support.interruption import held
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from continuum_dyn.reproduce import Rone2012, Shapes
+    from continuum_dyn.experiments.reproduce import Rone2012, Shapes
     from statics.equilibria import Equilibrium
 
 
@@ -26,8 +26,8 @@ def reproduce(
     rone2012: its Table 2, Fig. 3 and Fig. 4, by the equations as printed, by the program's, and by the exact
     rod between disks, which judges both. Writes DIR/PAPER_table_2.csv, PAPER_shapes.csv and PAPER.png.
     """
-    from continuum_dyn.reproduce import reproduce as compute
-    from continuum_dyn.views import plots
+    from continuum_dyn.experiments.reproduce import reproduce as compute
+    from continuum_dyn.views.figures import plots
 
     found = compute(paper)
     make_folder(out)
@@ -43,7 +43,7 @@ def _columns_of_table_2(found: "Rone2012") -> dict[str, "np.ndarray"]:
     """Positions of each disk, shape (disks, 2), m, by where they come from."""
     import numpy as np
 
-    from continuum_dyn.reproduce import TABLE_2_FINITE_ELEMENTS, TABLE_2_VIRTUAL_WORK
+    from continuum_dyn.experiments.reproduce import TABLE_2_FINITE_ELEMENTS, TABLE_2_VIRTUAL_WORK
 
     spread = {"core spread": found.core_spread.program, "core spread, exact rod": found.core_spread.rod}
     shapes = {**found.unactuated.by_law, "unrounded": found.unrounded, **spread}
@@ -132,7 +132,7 @@ def _mass_table(found: "Rone2012") -> Any:
 
 def _below(program: "Equilibrium") -> str:
     """By how much each disk's sag is smaller than the paper's, in percent."""
-    from continuum_dyn.reproduce import TABLE_2_VIRTUAL_WORK
+    from continuum_dyn.experiments.reproduce import TABLE_2_VIRTUAL_WORK
 
     return ", ".join(f"{100 * below:.4f}" for below in 1 - program.disk_y / TABLE_2_VIRTUAL_WORK[:, 1])
 
@@ -141,7 +141,7 @@ def _distance_table(found: "Rone2012") -> Any:
     """Each disk's x, and the errors of its distance from the base as the paper defines them."""
     import numpy as np
 
-    from continuum_dyn.reproduce import TABLE_2_PERCENT_ERROR
+    from continuum_dyn.experiments.reproduce import TABLE_2_PERCENT_ERROR
 
     columns = _columns_of_table_2(found)
     away = {name: np.hypot(*column.T) for name, column in columns.items()}

@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.arguments import Folder, Overrides
-from continuum_dyn.commands.show import length, make_folder
-from continuum_dyn.commands.verbosity import shows_progress
-from continuum_dyn.extras import MissingExtraError, extras_named
+from continuum_dyn.commands.terminal.arguments import Folder, Overrides
+from continuum_dyn.commands.terminal.extras import MissingExtraError, extras_named
+from continuum_dyn.commands.terminal.show import length, make_folder
+from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import InputError
 from statics.support.interruption import held
 from statics.support.stages import stage
 
 if TYPE_CHECKING:
-    from continuum_dyn.begun import Begun
-    from continuum_dyn.log_comparison import Comparison
     from continuum_dyn.record import Log
+    from continuum_dyn.record.comparison import Comparison
+    from continuum_dyn.scenario.scenario import Scenario
     from continuum_dyn.simulation import Run
-    from continuum_dyn.study import Scenario
+    from continuum_dyn.simulation.resumption import Begun
     from statics.equilibria import Equilibrium
 
 MAX_ROWS = 20
@@ -43,7 +43,7 @@ class Job:
     source: Path
     scenario: "Scenario"
     log: Path
-    begun: "Begun | None" = None
+    resumption: "Begun | None" = None
     earlier: "Log | None" = None
 
 
@@ -91,9 +91,9 @@ def _load(files: list[Path], overrides: Sequence[str], out: Path) -> list[Job]:
 
 def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
     with held():  # what Ctrl-C breaks off within the import of a library might come out as anything
-        from continuum_dyn.logged_scenario import logged_scenario
         from continuum_dyn.record import read_log
-        from continuum_dyn.scenario import load_scenario
+        from continuum_dyn.record.logged_scenario import logged_scenario
+        from continuum_dyn.scenario.reading import load_scenario
 
     if path.suffix != ".h5":
         return Job(path, load_scenario(path, overrides), out / f"{path.stem}.h5")
@@ -115,14 +115,14 @@ def answer(job: Job, as_json: bool) -> int:
 
 
 def _answer(job: Job, quiet: bool) -> dict[str, Any]:
-    from continuum_dyn.log_comparison import compare
     from continuum_dyn.record import StreamedLog, read_log
+    from continuum_dyn.record.comparison import compare
     from continuum_dyn.simulation import simulate
 
     started = time.perf_counter()
     with StreamedLog(job.log) as streamed:
         with _progress(job.scenario.title, quiet) as progress:
-            result = simulate(job.scenario, progress, sink=streamed, begun=job.begun)
+            result = simulate(job.scenario, progress, sink=streamed, resumption=job.begun)
         with stage("log written"):
             streamed.finish(result)
     log = read_log(job.log)

@@ -7,7 +7,7 @@ import numpy as np
 
 from continuum_dyn.passes import accelerations, observation
 from continuum_dyn.passes.motion_passes import LINEARIZED, MIDPOINT, MOTION
-from continuum_dyn.profiles import Span
+from continuum_dyn.scenario.intervals import Span
 from statics.errors import InputError
 from statics.kernels.loading import Family, Kernel, Loader, load
 from statics.scene import Scene

@@ -10,7 +10,7 @@ from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import runge_kutta
 from continuum_dyn.integrators.runge_kutta import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
-from continuum_dyn.profiles import Span
+from continuum_dyn.scenario.intervals import Span
 
 BATCH = 256
 """Most internal steps to one step of SciPy's: a call through ``solve_ivp`` costs as much as one of them."""

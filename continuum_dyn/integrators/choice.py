@@ -6,8 +6,9 @@ import numpy as np
 
 from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.modes import rates
-from continuum_dyn.profiles import Span
-from continuum_dyn.study import Method, dissipated_by
+from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.scenario import dissipated_by
+from continuum_dyn.scenario.solver import Method
 from statics.errors import InputError
 from statics.scene import Scene
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 from scipy.integrate import OdeSolver
 
-from continuum_dyn.study import Solver
+from continuum_dyn.scenario.solver import Solver
 from statics.outcome import Outcome
 from statics.support.interruption import Interruption
 

@@ -8,7 +8,7 @@ from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import midpoint
-from continuum_dyn.profiles import Span
+from continuum_dyn.scenario.intervals import Span
 
 BATCH = 256
 """Most internal steps to one step of SciPy's."""

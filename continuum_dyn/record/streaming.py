@@ -1,7 +1,7 @@
 """A motion's log, written while the motion is computed: FILE.h5.part, until the answer is there.
 
 HDF5's mode for a single writer and many readers keeps what was flushed readable whenever the writer is
-killed, if no object is made once it has begun. So the file is made whole, with no samples, before it takes
+killed, if no object is made once it has resumption. So the file is made whole, with no samples, before it takes
 its name; blocks of samples are appended; and a copy of it is finished and takes the log's place.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import h5py
 import numpy as np
@@ -26,10 +26,12 @@ from continuum_dyn.record.writing import (
     write_log,
     write_what_was_asked,
 )
-from continuum_dyn.simulation import Run
-from continuum_dyn.trajectory import Trajectory
 from statics.errors import LogError
 from statics.support.interruption import held
+
+if TYPE_CHECKING:
+    from continuum_dyn.simulation import Run
+    from continuum_dyn.simulation.trajectory import Trajectory
 
 ROOM = 200_000
 """Bytes kept free beside a block's chunks, for what HDF5 notes of them."""
@@ -57,12 +59,12 @@ class StreamedLog:
     ) -> None:
         self._close()
 
-    def begin(self, run: Run) -> None:
+    def begin(self, run: "Run") -> None:
         """A motion begins. What is unfinished so far stays until its first block is there."""
         self._close()
         self.run, self.rows, self._tails = run, 0, {}
 
-    def add(self, block: Trajectory) -> None:
+    def add(self, block: "Trajectory") -> None:
         """Append a block, and flush it."""
         with held(), self._errors_told():
             if self._file is None:
@@ -72,7 +74,7 @@ class StreamedLog:
                 self._append(self._file, block)
                 self._file.flush()
 
-    def finish(self, run: Run) -> None:
+    def finish(self, run: "Run") -> None:
         """Put the log of the answer in its place; nothing else is left."""
         with held(), self._errors_told():
             if self.rows == 0 or run.trajectory is None or run.scenario.accuracy is not None:
@@ -82,7 +84,7 @@ class StreamedLog:
                 self._finish_copy(run, run.trajectory)
             self.part.unlink(missing_ok=True)
 
-    def _create(self, block: Trajectory) -> None:
+    def _create(self, block: "Trajectory") -> None:
         assert self.run is not None
         with self._new() as new:
             with h5py.File(new, "w", libver=VERSIONS, locking=False) as file:
@@ -98,7 +100,7 @@ class StreamedLog:
         file.swmr_mode = True
         self._file = file
 
-    def _append(self, file: h5py.File, block: Trajectory) -> None:
+    def _append(self, file: h5py.File, block: "Trajectory") -> None:
         group, columns = file["trajectory"], columns_of(block)
         for name, values in columns.items():
             check_finite(group, name, values)
@@ -106,7 +108,7 @@ class StreamedLog:
             self._tails[name] = _append(group[name], values, self.rows, self._tails.get(name))
         self.rows += block.time.size
 
-    def _finish_copy(self, run: Run, trajectory: Trajectory) -> None:
+    def _finish_copy(self, run: "Run", trajectory: "Trajectory") -> None:
         self._close()
         with self._new() as new:
             shutil.copyfile(self.part, new)
@@ -165,7 +167,7 @@ def _append(dataset: h5py.Dataset, values: np.ndarray, rows: int, tail: np.ndarr
     return values[len(values) - len(values) % CHUNK :]
 
 
-def _keep_room(path: Path, file: h5py.File, block: Trajectory) -> None:
+def _keep_room(path: Path, file: h5py.File, block: "Trajectory") -> None:
     """Take the room that a block needs from the file system, before HDF5 does and gets a part of it."""
     if not hasattr(os, "posix_fallocate"):
         return

@@ -5,20 +5,23 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
 from continuum_dyn.record.datasets import TEXT, whole_file, write_columns
 from continuum_dyn.record.log_format import FORMAT, FORMAT_VERSION, GROUPS
-from continuum_dyn.simulation import Run
-from continuum_dyn.study import MotionStudy, Scenario
-from continuum_dyn.trajectory import Trajectory
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.studies import MotionStudy
 from statics.equilibria import Equilibrium
 
+if TYPE_CHECKING:
+    from continuum_dyn.simulation import Run
+    from continuum_dyn.simulation.trajectory import Trajectory
 
-def write_log(run: Run, path: Path) -> None:
+
+def write_log(run: "Run", path: Path) -> None:
     """Write a run. Raises ``LogError`` if the file cannot be written; then nothing is left behind."""
     with whole_file(path) as file:
         file.attrs.update(attributes_of(run))
@@ -32,7 +35,7 @@ def write_log(run: Run, path: Path) -> None:
             write_columns(group, scales, columns, GROUPS["trajectory"])
 
 
-def attributes_of(run: Run, complete: bool = True) -> dict[str, Any]:
+def attributes_of(run: "Run", complete: bool = True) -> dict[str, Any]:
     """Attributes of the file: what was asked, what came of it, and what made it."""
     attributes: dict[str, Any] = {
         "format": FORMAT,
@@ -101,7 +104,7 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
     write_columns(group, scales, columns, GROUPS["arm"])
 
 
-def write_equilibria(file: h5py.File, run: Run) -> None:
+def write_equilibria(file: h5py.File, run: "Run") -> None:
     """Those that were found, if any, with their numbers in the study, and in a motion their times.
 
     Unstable ones that a search has left stand before the one that it found, under the same number.
@@ -128,7 +131,7 @@ def _stacked(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:
     return None if any(value is None for value in values) else np.array(values)
 
 
-def columns_of(trajectory: Trajectory) -> dict[str, np.ndarray]:
+def columns_of(trajectory: "Trajectory") -> dict[str, np.ndarray]:
     """A motion's samples by glossary name, its time among them."""
     columns = {name: value for name, value in vars(trajectory).items() if isinstance(value, np.ndarray)}
     del columns["tip_speed"], columns["inputs"]

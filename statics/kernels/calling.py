@@ -21,7 +21,7 @@ def run(address: int, n: int, scalars: np.ndarray, *arrays: np.ndarray) -> None:
     kind(int(address))(n, *pointers)
 
 
-@infer_global(run)
+@infer_global(run)  # pyright: ignore[reportOptionalCall]
 class _TypeOfRun(AbstractTemplate):
     """Tells numba that ``run`` takes any arrays and returns nothing."""
 

@@ -25,10 +25,10 @@ from statics.support.stages import LOG
 SHARED = (Path(__file__).parent, Path(__file__).parent.parent / "passes")
 """Folders of what compiled functions everywhere may call."""
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+Result = TypeVar("Result")
 
 
-def compiled(function: Function) -> Function:
+def compiled(function: Callable[..., Result]) -> Callable[..., Result]:
     """The function, compiled when it is first called with arguments of some types, and kept."""
     result: Any = njit(nogil=True, error_model="numpy")(function)
     if isinstance(result, Dispatcher):
@@ -43,7 +43,9 @@ def _digest(folder: Path) -> str:
     from importlib.metadata import version
 
     whole = hashlib.sha256(repr([version(name) for name in ("numba", "llvmlite", "numpy")]).encode())
-    for file in sorted({file for each in (folder, *SHARED) for file in each.glob("*.py")}):
+    for file in sorted(
+        {file for each in (folder, folder.parent / "passes", *SHARED) for file in each.glob("*.py")}
+    ):
         whole.update(file.name.encode() + file.read_bytes())
     return whole.hexdigest()
 

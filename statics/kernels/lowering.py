@@ -17,6 +17,7 @@ import ast
 import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from statics.errors import ContinuumError
 
@@ -145,7 +146,7 @@ class _Code:
         self.unit = unit
         self.lines: list[str] = []
         self.results: list[tuple[str, str]] = []
-        self.scope: dict[str, object] = {}
+        self.scope: dict[str, Any] = {}
         self.index = "%i"
         self.label = "entry"
         self.count = 0
@@ -209,7 +210,7 @@ class _Code:
     def several(self, node: ast.expr) -> list[str]:
         """Values of a tuple, of what is carried or given, or of a call of a function above."""
         if isinstance(node, ast.Name) and isinstance(self.scope.get(node.id), list):
-            return list(self.scope[node.id])  # pyright: ignore[reportArgumentType]
+            return list(self.scope[node.id])
         if isinstance(node, ast.Tuple):
             return [self.value(part) for part in node.elts]
         if (

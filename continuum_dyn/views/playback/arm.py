@@ -3,7 +3,7 @@
 import numpy as np
 import rerun as rr
 
-from continuum_dyn.views.backbone import backbone, poses
+from continuum_dyn.views.figures.backbone import backbone, poses
 from continuum_dyn.views.playback.colors import (
     BLACK,
     GREEN,

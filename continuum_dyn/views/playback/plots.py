@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import rerun as rr
 
-from continuum_dyn.study import StepResponseStudy
+from continuum_dyn.scenario.studies import StepResponseStudy
 from continuum_dyn.views.playback.colors import GREY, PALETTE, shades, told_apart
 from continuum_dyn.views.playback.drawing import when
 from continuum_dyn.views.playback.story import Story, spread

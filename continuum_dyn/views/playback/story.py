@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.logged_scenario import logged_scenario
 from continuum_dyn.record import Log
-from continuum_dyn.study import Scenario
+from continuum_dyn.record.logged_scenario import logged_scenario
+from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import LogError
 
 FRAMES_PER_SECOND = 60

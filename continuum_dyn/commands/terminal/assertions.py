@@ -1,0 +1,98 @@
+"""What a laboratory asks of a figure: ``--assert "settling_time_2 < 0.8"``. Nothing of it is evaluated."""
+
+import operator
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import typer
+
+from continuum_dyn.commands.terminal.show import plain_table
+from statics.errors import InputError, did_you_mean
+from statics.quantities import QUANTITIES
+
+NOT_HELD = 1
+"""Exit status where an assertion does not hold."""
+COMPARISONS: dict[str, Callable[[float, float], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+GRAMMAR = re.compile(r"\s*(\w+)\s*(<=|>=|<|>)\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*", re.ASCII)
+"""NAME, a comparison, NUMBER."""
+HELP = 'Exit with 1 unless it holds, e.g. "{}"; NAME < NUMBER, or <=, >, >=; in SI units. Repeatable.'
+
+
+class Assertion(NamedTuple):
+    """That the figure of that name is less or more than a bound, in SI units."""
+
+    name: str
+    comparison: str
+    bound: float
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.comparison} {self.bound:g}"
+
+
+class Verdict(NamedTuple):
+    """Whether an assertion holds of what was found; of what was not found it does not."""
+
+    assertion: Assertion
+    value: float | None
+    holds: bool
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """What ``--json`` prints of it."""
+        return {"assert": str(self.assertion), "value": self.value, "holds": self.holds}
+
+
+def parsed(texts: Sequence[str], known: Sequence[str]) -> list[Assertion]:
+    """The assertions of those texts. Raises ``InputError`` for one that is none, or of an unknown name."""
+    return [_parsed(text, known) for text in texts]
+
+
+def _parsed(text: str, known: Sequence[str]) -> Assertion:
+    found = GRAMMAR.fullmatch(text)
+    if found is None:
+        raise InputError(
+            f"--assert takes NAME < NUMBER, or <=, >, >=, in SI units; read: '{text[:60]}'. "
+            f"Try: --assert '{known[0]} < 0.1'. Known names: {', '.join(known)}."
+        )
+    name, comparison, bound = found.groups()
+    if name not in known:
+        raise InputError(f"--assert: there is no figure '{name[:60]}'.{did_you_mean(name, known)}")
+    return Assertion(name, comparison, float(bound))
+
+
+def judged(assertions: Sequence[Assertion], figures: Mapping[str, float | None]) -> list[Verdict]:
+    """Each assertion with the figure that was found."""
+    found = [(assertion, figures[assertion.name]) for assertion in assertions]
+    return [
+        Verdict(
+            assertion, value, value is not None and COMPARISONS[assertion.comparison](value, assertion.bound)
+        )
+        for assertion, value in found
+    ]
+
+
+def verdict_table(verdicts: Sequence[Verdict], missing: Mapping[str, str]) -> Any:
+    """Each assertion, whether it holds, and what was found instead."""
+    table = plain_table("\nAsked for", "assertion", "holds", "found")
+    table.columns[2].justify, table.columns[2].overflow = "left", "fold"
+    for assertion, value, holds in verdicts:
+        unit = QUANTITIES[assertion.name].unit
+        told = (
+            f"nothing: {missing[assertion.name]}"
+            if value is None
+            else f"{value:.6g}{'' if unit == '1' else ' ' + unit}"
+        )
+        table.add_row(str(assertion), "yes" if holds else "no", told)
+    return table
+
+
+def leave(verdicts: Sequence[Verdict]) -> None:
+    """Exit with ``NOT_HELD`` if an assertion does not hold."""
+    if not all(verdict.holds for verdict in verdicts):
+        raise typer.Exit(NOT_HELD)

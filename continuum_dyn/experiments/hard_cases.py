@@ -1,0 +1,175 @@
+"""Hard cases: a scenario run by every method that claims it, and held to what must hold of its motion."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from continuum_dyn.experiments.bounds import Bound, bounds_of
+from continuum_dyn.integrators import Budget
+from continuum_dyn.scenario.expect import Expected
+from continuum_dyn.scenario.reading import load_expecting
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.simulation import Run, simulate
+from continuum_dyn.simulation.accuracy import tip_distance
+from continuum_dyn.simulation.trajectory import Trajectory
+from statics.effects import Extension
+from statics.errors import InputError
+from statics.outcome import Outcome
+from statics.scene import Scene
+
+TIGHTER = 1e-3
+"""Times a case's tolerances: those of the run that errors are measured against."""
+TIGHTEST = 1e-13
+
+
+@dataclass(frozen=True)
+class HardCase:
+    """A scenario with what is expected of it; ``name`` is its file's, and whether extension is as there."""
+
+    name: str
+    scenario: Scenario
+    expected: Expected
+
+    @property
+    def reference(self) -> Method:
+        """The method that errors are measured against."""
+        return list(self.expected.steps)[-1]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How one method did: ``refused`` says why it cannot integrate the scene at all, else there is a run.
+
+    ``tip_error`` in m, None where the run ended otherwise than it should; ``bounds`` are then not known,
+    either. ``missed`` has a sentence for everything that did not hold. ``claimed`` tells whether the case
+    says that the method can do it.
+    """
+
+    case: HardCase
+    method: Method
+    claimed: bool
+    run: Run | None = None
+    refused: str = ""
+    tip_error: float | None = None
+    bounds: tuple[Bound, ...] = ()
+    missed: tuple[str, ...] = ()
+
+    @property
+    def used(self) -> float:
+        """Largest part of any bound that the run used up."""
+        return max((bound.part for bound in self.bounds), default=0.0)
+
+
+def load_cases(path: Path) -> list[HardCase]:
+    """The case of a scenario file, and the same with or without extension where the file asks for it.
+
+    Raises ``InputError`` if it is not one of a motion, or expects nothing.
+    """
+    scenario, expect = load_expecting(path)
+    if expect is None:
+        raise InputError(f"{path}: expects nothing. Give [expect] outcome, and steps of each method.")
+    if not isinstance(scenario.study, MotionStudy):
+        raise InputError(
+            f'{path}: [expect] is about a motion; this is a study of kind "{scenario.study.kind}".'
+        )
+    extends, name = scenario.scene.has("extension"), path.stem
+    other = expect.without_extension if extends else expect.with_extension
+    if (expect.with_extension if extends else expect.without_extension) is not None:
+        raise InputError(
+            f"{path}: [expect.{'with' if extends else 'without'}_extension]: the scenario is so by itself. "
+            "Give that in [expect]."
+        )
+    cases = [HardCase(name, scenario, expect)]
+    if other is not None and extends:
+        cases.append(HardCase(f"{name}, without extension", scenario.without("extension"), other))
+    elif other is not None:
+        effects = (*scenario.scene.effects, Extension())
+        extending = replace(scenario, scene=Scene(scenario.scene.arm, effects))
+        cases.append(HardCase(f"{name}, with extension", extending, other))
+    return cases
+
+
+def judge(
+    case: HardCase,
+    others: Iterable[Method] = (),
+    patience: float = 3600.0,
+    told: Callable[[str], None] = lambda _: None,
+) -> list[Verdict]:
+    """A verdict for each method that claims the case, then for those ``others`` that do not.
+
+    An other has ``patience`` (s) for its run; ``told`` is called with what is going on.
+    """
+    claiming: tuple[Method, ...] = tuple(case.expected.steps)
+    told(f"{case.name}: reference")
+    reference = _reference(case)
+    verdicts = []
+    order: list[Method] = [*claiming, *(other for other in others if other not in claiming)]
+    for method in order:
+        told(f"{case.name}: {method}")
+        seconds = case.scenario.solver.max_seconds
+        if method not in claiming:
+            seconds = min(seconds, patience)
+        verdicts.append(_verdict(case, method, reference, Budget(case.scenario.solver.max_steps, seconds)))
+    return verdicts
+
+
+def _reference(case: HardCase) -> Trajectory | None:
+    """The motion by the case's last method at tighter tolerances; None if it ended otherwise than it must."""
+    rtol = max(TIGHTEST, TIGHTER * case.scenario.solver.rtol)
+    tight = replace(case.scenario.solver, method=case.reference, step=None, rtol=rtol, atol=1e-3 * rtol)
+    run = simulate(_as_far_as_claimed(case, tight))
+    return run.trajectory if run.outcome is _outcome(case, case.reference) else None
+
+
+def _as_far_as_claimed(case: HardCase, solver: Solver) -> Scenario:
+    """The scenario by that method, up to the sample that it goes to."""
+    scenario, study = replace(case.scenario, solver=solver), case.scenario.study
+    until = case.expected.until.get(solver.method)
+    assert isinstance(study, MotionStudy)
+    if until is None:
+        return scenario
+    between = study.duration / (study.samples - 1)
+    count = max(1, int(until / between * (1.0 + 1e-9)))
+    return replace(scenario, study=MotionStudy(count * between, samples=count + 1))
+
+
+def _outcome(case: HardCase, method: Method) -> Outcome:
+    """How the case must end by that method."""
+    cut, settled = method in case.expected.until, case.expected.outcome is Outcome.SETTLED
+    return Outcome.COMPLETED if cut and settled else case.expected.outcome
+
+
+def _verdict(case: HardCase, method: Method, reference: Trajectory | None, budget: Budget) -> Verdict:
+    claimed, solver = method in case.expected.steps, case.scenario.solver
+    step = solver.step if method == "midpoint" else None
+    try:
+        scenario = _as_far_as_claimed(case, replace(solver, method=method, step=step))
+        run = simulate(scenario, budget=budget)
+    except InputError as reason:
+        missed = (str(reason),) if claimed else ()
+        return Verdict(case, method, claimed, refused=str(reason), missed=missed)
+    if run.outcome is not _outcome(case, method) or run.trajectory is None:
+        why = f": {run.message}" if run.message else ""
+        ended = f"ended as {run.outcome}, not {_outcome(case, method)}{why}"
+        return Verdict(case, method, claimed, run, missed=(ended,))
+    error = None if reference is None else _tip_error(run.trajectory, reference, case.expected.horizon)
+    bounds = bounds_of(run, case.expected, error, whole=method not in case.expected.until)
+    missed = tuple(str(bound) for bound in bounds if not bound.kept)
+    return Verdict(case, method, claimed, run, "", error, tuple(bounds), missed)
+
+
+def _tip_error(found: Trajectory, reference: Trajectory, horizon: float | None) -> float:
+    """Largest distance of the tips over the samples that both have, up to the horizon.
+
+    The last state of a run that stopped early is no sample.
+    """
+    count = min(found.time.size, reference.time.size)
+    same = np.isclose(found.time[:count], reference.time[:count], rtol=1e-9, atol=0.0)
+    count = count if same.all() else int(np.argmin(same))
+    if horizon is not None:
+        count = min(count, int(np.searchsorted(reference.time, horizon * (1.0 + 1e-9), "right")))
+    return tip_distance(found.first(count), reference.first(count))

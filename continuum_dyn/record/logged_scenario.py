@@ -1,0 +1,29 @@
+"""The scenario of a log, from the log alone: no file beside it is read."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from continuum_dyn.record import Log
+from continuum_dyn.scenario.reading import parse
+from continuum_dyn.scenario.scenario import Scenario
+from statics.errors import InputError, LogError
+
+
+def logged_scenario(log: Log, overrides: Sequence[str] = ()) -> Scenario:
+    """The scenario that a log answers, of the text and the tables that it carries, with changes to it.
+
+    Raises ``LogError`` for a log that carries none, or one that this program does not take.
+    """
+    if not log.scenario:
+        raise LogError(f"{log.path}: made from Python, it carries no scenario's text.")
+
+    def text_of_table(name: str) -> str:
+        if name not in log.tables:
+            raise InputError(f"the table '{name}' is not in the log.")
+        return log.tables[name]
+
+    try:
+        scenario = parse(log.scenario, log.path, text_of_table, overrides)[0]
+    except InputError as error:
+        raise LogError(f"the scenario in {error}") from error
+    return scenario if overrides else replace(scenario, title=log.title)

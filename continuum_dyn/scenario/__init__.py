@@ -1,0 +1,1 @@
+"""Scenario files come in; scenarios, checked, go out."""

@@ -1,0 +1,130 @@
+"""Changes to a scenario that are made where it is run: ``arm.disks=16``.
+
+An override is a line of TOML: a dotted key, and a value. Its key leads through the tables of the file, and
+through a list such as [[cables]] by the names of its tables.
+"""
+
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import shorten
+from typing import Any, get_origin
+
+from continuum_dyn.scenario.tables import ScenarioFile
+from continuum_dyn.scenario.toml_text import toml_text
+from statics.errors import InputError, did_you_mean
+from statics.support.checked import LONGEST_LINE
+
+LISTS = [name for name, field in ScenarioFile.model_fields.items() if get_origin(field.annotation) is list]
+"""Lists of tables, which a file may leave out."""
+
+_KEY_AND_VALUE = re.compile(r"""((?:"[^"]*"|'[^']*'|[^"'=])+)=(.+)""")
+_WORD = re.compile(r"[A-Za-z][\w./-]*")
+"""What is taken as text without quotes, which a shell would eat."""
+
+
+@dataclass(frozen=True)
+class Override:
+    """A change: the tables that it leads through, the key in the last of them, its new value."""
+
+    text: str
+    tables: tuple[str, ...]
+    key: str
+    value: Any
+
+
+def overridden(text: str, name: str, overrides: Sequence[str]) -> str:
+    """The text of the scenario ``name`` with changes: TOML written anew, with a comment that tells of them.
+
+    Its title tells of them, too, unless it is changed itself. Raises ``InputError`` for what is no override
+    or leads nowhere, ``tomllib.TOMLDecodeError`` for a text that is not TOML.
+    """
+    if not overrides:
+        return text
+    content = tomllib.loads(text)
+    title = f"{content.pop('title', name)}, {', '.join(overrides)}"
+    content = {"title": shorten(title, LONGEST_LINE, placeholder=" ...")} | content
+    for change in map(_parsed, overrides):
+        _table(content, change)[change.key] = change.value
+    return "\n".join([f"# {name}, with", *(f"#   {override}" for override in overrides), toml_text(content)])
+
+
+def _parsed(text: str) -> Override:
+    parts = _KEY_AND_VALUE.fullmatch(text) if text.isprintable() else None
+    if parts is None:
+        raise InputError(
+            f"--set {text!r}: not KEY=VALUE. Try such as arm.disks=16, or cables.upper.tension.after=2."
+        )
+    *tables, key = _words(parts[1].strip(), text)
+    return Override(text, tuple(tables), key, _value(parts[2].strip(), text))
+
+
+def _words(key: str, text: str) -> list[str]:
+    """The words of a dotted key, some of which may be quoted."""
+    words: list[str] = []
+    try:
+        inside: Any = tomllib.loads(f"{key} = 0")
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(
+            f"--set {text}: {key!r} is no key. Words of letters, digits, - and _ with dots between them are, "
+            "others in quotes: cables.'left one'.tension."
+        ) from error
+    while isinstance(inside, dict):
+        ((word, inside),) = inside.items()
+        words.append(word)
+    return words
+
+
+def _value(value: str, text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError as error:
+        if _WORD.fullmatch(value):
+            return value
+        raise InputError(
+            f"--set {text}: {value!r} is no value. Such are 2, 1e-3, true, [0.0, 1.0], chain, "
+            """'"two words"' and '{ profile = "step", before = 0, after = 2 }'."""
+        ) from error
+
+
+def _table(content: dict[str, Any], change: Override) -> dict[str, Any]:
+    """The table whose key is changed; tables on the way are made where they are not there."""
+    place: Any = content
+    for depth, word in enumerate(change.tables):
+        if isinstance(place, dict):
+            place = place.setdefault(word, [] if depth == 0 and word in LISTS else {})
+        elif _holds_tables(place):
+            place = _named(word, place, change, depth)
+        else:
+            raise _no_table(change, depth, place)
+    if not isinstance(place, dict):
+        raise _no_table(change, len(change.tables), place)
+    return place
+
+
+def _holds_tables(place: Any) -> bool:
+    return isinstance(place, list) and all(isinstance(entry, dict) for entry in place)
+
+
+def _no_table(change: Override, depth: int, place: Any) -> InputError:
+    where = ".".join(change.tables[:depth])
+    if _holds_tables(place):
+        return InputError(f"--set {change.text}: {where} is a list of tables. Name a table and its key.")
+    return InputError(
+        f"--set {change.text}: {where} is {place!r:.60}, without keys. Set it as a whole: {where}=..."
+    )
+
+
+def _named(word: str, tables: list[Any], change: Override, depth: int) -> dict[str, Any]:
+    """The table of that name in a list; one without a name is called cable_1, load_2 or the like."""
+    header = change.tables[depth - 1]
+    kind = header.removesuffix("s")
+    known = {
+        str(table.get("name", f"{kind}_{number}")): table for number, table in enumerate(tables, start=1)
+    }
+    if not known:
+        raise InputError(f"--set {change.text}: the scenario has no [[{header}]].")
+    if word not in known:
+        raise InputError(f"--set {change.text}: no {kind} is named '{word}'.{did_you_mean(word, known)}")
+    return known[word]

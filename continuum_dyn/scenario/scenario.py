@@ -1,0 +1,219 @@
+"""The scenario: a scene, its inputs over time, a study, and the solver's settings."""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, lowest
+from continuum_dyn.scenario.rates import Rate, check_smooth
+from continuum_dyn.scenario.solver import Accuracy, Solver
+from continuum_dyn.scenario.studies import MotionStudy, RampStudy, Study
+from statics.arc_length import check_followable
+from statics.effects import Effect
+from statics.errors import InputError
+from statics.scene import Scene
+
+MAX_STORED = 20_000_000
+"""Most segments times samples that a log may hold."""
+
+
+def dissipated_by(scene: Scene) -> list[str]:
+    """Names of the effects that take energy from the scene's motion."""
+    return [effect.name for effect in scene.effects if _dissipates(scene, effect)]
+
+
+def _dissipates(scene: Scene, effect: Effect) -> bool:
+    return effect.account == "dissipated_power" and any(map(np.any, effect.columns(scene.arm).values()))
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenario:
+    """A scene, what drives each of its cables, and what is asked of it.
+
+    ``drives`` holds a profile for each cable, or for a ramp study a list for each: of tensions (N), or of
+    displacements (m) of a cable that is driven by its length;
+    ``text`` is the file that it was read from, ``tables`` those of the CSV files beside it, by name. With
+    ``accuracy`` the solver's tolerances are the program's to choose; with ``chooses_mesh`` the number of the
+    arm's sub-segments, too. ``load_factors`` has likewise a profile or a list for each driven load,
+    ``base_motion`` profiles of x, y (m) and angle
+    (rad) of a base that moves. Raises ``InputError`` where these do not fit.
+    """
+
+    scene: Scene
+    drives: tuple[Profile, ...] | tuple[tuple[float, ...], ...]
+    study: Study
+    solver: Solver = dataclasses.field(default_factory=Solver)
+    accuracy: Accuracy | None = None
+    chooses_mesh: bool = False
+    load_factors: tuple[Profile, ...] | tuple[tuple[float, ...], ...] = ()
+    base_motion: tuple[Profile, ...] = ()
+    title: str = ""
+    text: str = ""
+    tables: Mapping[str, str] = dataclasses.field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        if len(self.drives) != self.scene.cables:
+            raise InputError(
+                f"{len(self.drives)} tensions or displacements given for {self.scene.cables} cables."
+            )
+        if len(self.load_factors) != self.scene.driven_loads:
+            raise InputError(
+                f"{len(self.load_factors)} factors given for {self.scene.driven_loads} driven loads."
+            )
+        if self.scene.arm.base_moves or self.base_motion:
+            self._check_base()
+        for cable, profile in zip(self.scene.arm.cables, self.drives, strict=False):
+            name, pulled = cable.name, not cable.driven_by_length
+            if pulled and not isinstance(profile, tuple) and lowest(profile) < 0:
+                raise InputError(
+                    f"cable '{name}': a cable cannot push; its tension comes down to {lowest(profile):g} N."
+                )
+        if self.chooses_mesh and self.accuracy is None:
+            raise InputError('subsegments = "auto" needs an accuracy to aim at. Add [accuracy] tip, in m.')
+        if self.accuracy is not None and not (self.chooses_mesh or isinstance(self.study, MotionStudy)):
+            raise InputError(
+                f'[accuracy] belongs to a study of motion, or to subsegments = "auto"; this is '
+                f'"{self.study.kind}" with given segments.'
+            )
+        if self.solver.method == "midpoint":
+            self._check_midpoint()
+        if isinstance(self.study, MotionStudy):
+            self._check_motion(self.study)
+        elif isinstance(self.study, RampStudy):
+            if self.study.path == "arc_length":
+                check_followable(self.scene)
+            if len({len(values) for values in self.ramps}) > 1:
+                counts = ", ".join(str(len(values)) for values in self.ramps)
+                raise InputError(
+                    f"tensions and load factors of a ramp must be lists of equal length; they have {counts} "
+                    "entries."
+                )
+        elif not all(isinstance(profile, Constant) for profile in self.profiles):
+            raise InputError('an "equilibrium" study takes one number for each tension and load factor.')
+
+    def _check_base(self) -> None:
+        arm = self.scene.arm
+        if not (arm.base_moves and len(self.base_motion) == len(arm.base_pose)):
+            raise InputError(
+                f"{len(self.base_motion)} profiles given for the motion of a base that "
+                f"{'moves' if arm.base_moves else 'does not move'}. Give x, y and angle of one that moves."
+            )
+        if not isinstance(self.study, MotionStudy):
+            raise InputError(
+                f'a base that moves belongs to a study of motion; this is "{self.study.kind}". '
+                "Give numbers for its x, y and angle."
+            )
+        for name, unit, start, profile in zip(
+            ("x", "y", "angle"), ("m", "m", "rad"), arm.base_pose, self.base_motion, strict=True
+        ):
+            check_smooth(profile, f"[base] {name}", unit)
+            if profile.initial != start:
+                raise InputError(
+                    f"[base] {name}: the arm's base is at {start:g} {unit}, its motion starts at "
+                    f"{profile.initial:g}. Give one number for both."
+                )
+        if arm.massless_nodes or (arm.core_density is None and self.chooses_mesh):
+            raise InputError(
+                "a base that moves needs mass on every node, and some carry none. "
+                "Give the arm's core_density, or disk_mass."
+            )
+
+    def _check_midpoint(self) -> None:
+        if self.accuracy is not None:
+            raise InputError(
+                '[accuracy] chooses tolerances, and method = "midpoint" has none. Give [solver] step without '
+                "[accuracy], or another method."
+            )
+        if self.scene.without_potential:
+            raise InputError(
+                'method = "midpoint" keeps the energy of scenes that have one; '
+                f'{" and ".join(self.scene.without_potential)} have no potential. Take method = "chain" or '
+                '"explicit".'
+            )
+        damping = dissipated_by(self.scene)
+        if damping:
+            raise InputError(
+                f'method = "midpoint" would leave out what dissipates: {", ".join(damping)}. Take method = '
+                f'"chain", or leave {" and ".join(damping)} out of [effects].'
+            )
+
+    def _check_motion(self, study: MotionStudy) -> None:
+        if not self.scene.has("inertia"):
+            raise InputError(f'a "{study.kind}" study needs inertia. Add inertia = {{}} to [effects].')
+        stored = study.samples * self.scene.arm.segments
+        if stored > MAX_STORED:
+            raise InputError(
+                f"{study.samples} samples of {self.scene.arm.segments} segments would store {stored:.3g} "
+                f"shapes. Allowed: {MAX_STORED:.3g}. Ask for fewer samples."
+            )
+
+    @property
+    def profiles(self) -> tuple[InPieces, ...]:
+        """What drives a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
+        driven = (*self.drives, *self.load_factors)
+        profiles = tuple(p for p in driven if not isinstance(p, tuple))
+        if len(profiles) != len(driven):
+            raise InputError(
+                f'lists of tensions or load factors belong to a "ramp" study; this is "{self.study.kind}".'
+            )
+        return (*profiles, *self._others(profiles))
+
+    def _others(self, driven: tuple[Any, ...]) -> tuple[InPieces, ...]:
+        """What drives a motion beside cables and loads, and the rates of cables that are driven by length."""
+        pose, motion = self._of_base
+        drawn_in = (driven[number] for number in self.scene.driven_by_length)
+        rates = (Constant(0.0) if isinstance(drive, tuple) else Rate(drive) for drive in drawn_in)
+        return (*pose, *rates, *motion)
+
+    @property
+    def _of_base(self) -> tuple[tuple[InPieces, ...], tuple[InPieces, ...]]:
+        """Its pose; and where it moves its velocities and its accelerations."""
+        arm = self.scene.arm
+        if not arm.base_moves:
+            return (() if arm.base is None else tuple(map(Constant, arm.base_pose))), ()
+        velocities = tuple(map(Rate, self.base_motion))
+        return self.base_motion, (*velocities, *map(Rate, velocities))
+
+    @property
+    def ramps(self) -> tuple[tuple[float, ...], ...]:
+        """The lists of a ramp study: of tensions, and then of load factors."""
+        driven = (*self.drives, *self.load_factors)
+        lists = tuple(values for values in driven if isinstance(values, tuple))
+        if len(lists) != len(driven):
+            raise InputError('a "ramp" study takes lists of tensions and load factors, or numbers.')
+        return lists
+
+    def with_mesh(self, subsegments: int, tip: float) -> "Scenario":
+        """The same with that many segments from disk to disk, in motion to within ``tip`` (m)."""
+        arm = dataclasses.replace(self.scene.arm, subsegments=subsegments)
+        return dataclasses.replace(
+            self,
+            scene=Scene(arm, self.scene.effects),
+            accuracy=Accuracy(tip) if isinstance(self.study, MotionStudy) else None,
+            chooses_mesh=False,
+        )
+
+    def without(self, effect: str) -> "Scenario":
+        """The same without the effect of that name, and without what drove it."""
+        scene = self.scene.without(effect)
+        return dataclasses.replace(
+            self,
+            scene=scene,
+            drives=self.drives if scene.cables else (),
+            load_factors=self.load_factors if scene.driven_loads else (),
+        )
+
+    @property
+    def settled_within(self) -> float:
+        """Distance (m) from the final equilibrium, and speed (m/s), below which the tip has settled."""
+        asked = getattr(self.study, "settled_within", None)
+        return 1e-3 * self.scene.arm.total_length if asked is None else asked
+
+    @property
+    def initial_inputs(self) -> np.ndarray:
+        """Inputs of the equilibrium that a study starts from, in the order of ``Scene.inputs``."""
+        driven = (*self.drives, *self.load_factors)
+        given = (*driven, *self._others(driven))
+        return np.array([t[0] if isinstance(t, tuple) else t.initial for t in given], dtype=float)

@@ -1,0 +1,187 @@
+"""What a scenario file may hold: its tables, their keys and the types of their values."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, Discriminator, Field, Tag, WithJsonSchema, create_model
+
+from continuum_dyn.effects import EFFECTS
+from continuum_dyn.scenario.csv_table import MAX_ROWS
+from continuum_dyn.scenario.expect import Expect
+from continuum_dyn.scenario.profiles import PROFILES, Constant, Ramp, Sine, SmoothRamp, Step
+from continuum_dyn.scenario.solver import Accuracy, Solver
+from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, RampStudy, StepResponseStudy
+from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassPerDisk, Payload, PerDisk
+from statics.support.checked import STRICT, Line, NonNegative, Positive, Vector
+
+
+class TableFile(BaseModel):
+    """A profile kept in a CSV file beside the scenario; of several ``periods`` the file is one."""
+
+    model_config = STRICT
+    profile: Literal["table"]
+    file: Annotated[
+        Line, Field(description="CSV file beside the scenario; its first line is time,tension or the like")
+    ]
+    periods: Annotated[
+        int, Field(ge=1, le=MAX_ROWS, description="how often its rows come, one time after the other")
+    ] = 1
+
+
+UNKNOWN_PROFILE = "profile"
+"""The tag of a profile of no known name; messages have it in the place that they name."""
+
+
+def _drive_kind(value: Any) -> str:
+    if isinstance(value, dict):
+        kind = value.get("profile")
+        return kind if isinstance(kind, str) and kind in PROFILES else UNKNOWN_PROFILE
+    return "list" if isinstance(value, list) else "number"
+
+
+class UnknownProfile(BaseModel):
+    """Where a profile's name is not one of ours: only there to say so."""
+
+    profile: Annotated[str, Field(pattern="^(" + "|".join(PROFILES) + ")$")]
+
+
+ProfileTable = (
+    Annotated[Constant, Tag("constant")]
+    | Annotated[Step, Tag("step")]
+    | Annotated[Ramp, Tag("ramp")]
+    | Annotated[SmoothRamp, Tag("smooth_ramp")]
+    | Annotated[Sine, Tag("sine")]
+    | Annotated[TableFile, Tag("table")]
+    | Annotated[UnknownProfile, Tag(UNKNOWN_PROFILE)]
+)
+Tension = Annotated[
+    Annotated[NonNegative, Tag("number")]
+    | Annotated[list[NonNegative], Field(min_length=1), Tag("list")]
+    | ProfileTable,
+    Discriminator(_drive_kind),
+]
+AnyDrive = Annotated[
+    Annotated[float, Tag("number")] | Annotated[list[float], Field(min_length=1), Tag("list")] | ProfileTable,
+    Discriminator(_drive_kind),
+]
+NumberOrProfile = Annotated[
+    Annotated[float, Tag("number")] | Annotated[float, Tag("list")] | ProfileTable,
+    Discriminator(_drive_kind),
+]
+"""A list is not allowed, and told so as a number that it is not."""
+
+
+def _number_kind(value: Any) -> str:
+    return "list" if isinstance(value, list) else "number"
+
+
+PositiveEach = Annotated[
+    Annotated[Positive, Tag("number")] | Annotated[PerDisk, Tag("list")], Discriminator(_number_kind)
+]
+MassEach = Annotated[
+    Annotated[NonNegative, Tag("number")] | Annotated[MassPerDisk, Tag("list")], Discriminator(_number_kind)
+]
+NumberEach = Annotated[
+    Annotated[float, Tag("number")]
+    | Annotated[Annotated[tuple[float, ...], Field(strict=False)], Tag("list")],
+    Discriminator(_number_kind),
+]
+"""One number, or a list of them: one for each disk."""
+
+
+Preset = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(PRESETS)})]
+"""Others are refused where the arm is made, with the nearest of them."""
+
+SUBSEGMENTS = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_SEGMENTS}, {"const": "auto"}]}
+
+
+class ArmTable(BaseModel):
+    """[arm]: its numbers; what is given beats the preset."""
+
+    model_config = STRICT
+    preset: Annotated[
+        Preset | None, Field(description="the arm of a paper: its numbers hold where none are given")
+    ] = None
+    disks: DiskNumber | None = None
+    disk_spacing: PositiveEach | None = None
+    youngs_modulus: PositiveEach | None = None
+    core_radius: PositiveEach | None = None
+    area: PositiveEach | None = None
+    second_moment: PositiveEach | None = None
+    disk_mass: MassEach | None = None
+    disk_inertia: MassEach | None = None
+    core_density: Positive | None = None
+    reference_curvature: NumberEach | None = None
+    subsegments: Annotated[
+        Annotated[int | Line, WithJsonSchema(SUBSEGMENTS)] | None,
+        Field(description='number of segments from disk to disk; "auto": as many as [accuracy] needs'),
+    ] = None
+
+
+class CableTable(BaseModel):
+    """One of [[cables]]: driven by its tension, or by its displacement with its stiffness."""
+
+    model_config = STRICT
+    name: Annotated[
+        Annotated[Line, Field(min_length=1, max_length=40)] | None,
+        Field(description="what the cable is called in results, logs and plots"),
+    ] = None
+    hole_offset: NumberEach
+    anchor: DiskNumber | None = None
+    tension: Tension | None = None
+    cable_displacement: AnyDrive | None = None
+    cable_stiffness: Positive | None = None
+    friction: NonNegative = 0.0
+    slip_speed: Positive | None = None
+
+
+class LoadTable(BaseModel):
+    """One of [[loads]]; with ``factor`` it changes in time, a ``follower`` force turns with its disk."""
+
+    model_config = STRICT
+    disk: DiskNumber
+    force: Vector = (0.0, 0.0)
+    moment: float = 0.0
+    follower: bool = False
+    factor: AnyDrive | None = None
+
+
+class BaseTable(BaseModel):
+    """[base]: numbers, or how they change in time."""
+
+    model_config = STRICT
+    x: NumberOrProfile = 0.0
+    y: NumberOrProfile = 0.0
+    angle: NumberOrProfile = 0.0
+
+
+NAMED_ELSEWHERE = ("cables", "cable_friction", "loads")
+"""Effects that come with a table of their own, or with a key in it."""
+
+EffectsTable: type[BaseModel] = create_model(
+    "EffectsTable",
+    __config__=STRICT,
+    __doc__="[effects]: the effects in play; what is not named is in no equation.",
+    **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
+)
+
+StudyTable = Annotated[
+    EquilibriumStudy | RampStudy | MotionStudy | StepResponseStudy,
+    Field(discriminator="kind", description="[study]: what is asked of the arm."),
+]
+
+
+class ScenarioFile(BaseModel):
+    """A scenario of continuum-dyn: an arm, the effects in play, and what is asked."""
+
+    model_config = STRICT
+    title: Annotated[Line, Field(description="what results, logs and plots are headed with")] = ""
+    arm: ArmTable
+    base: BaseTable | None = None
+    effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]
+    cables: list[CableTable] = []
+    loads: list[LoadTable] = []
+    payloads: list[Payload] = []
+    study: StudyTable
+    solver: Solver = Solver()
+    accuracy: Accuracy | None = None
+    expect: Expect | None = None

@@ -1,0 +1,1 @@
+"""Logs and answers come in, matplotlib figures go out."""
