@@ -20,8 +20,8 @@ from continuum_dyn.scenario.intervals import inputs_of, spans
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
-from continuum_dyn.simulation.resumption import Begun
-from continuum_dyn.simulation.trajectory import Trajectory, trajectory_of
+from continuum_dyn.simulation.resumption import Resumption
+from continuum_dyn.simulation.trajectory import Trajectory, observe_trajectory
 from statics import Outcome, codegen
 from statics.errors import LogError
 
@@ -87,8 +87,8 @@ def test_it_may_be_broken_off_any_number_of_times(tmp_path: Path) -> None:
     unbroken, log = simulate(scenario), broken_off(scenario, tmp_path / "log.h5", 50)
     assert unbroken.trajectory is not None
     for _ in range(3):
-        begun = logged_motion(log, logged_scenario(log))
-        run = simulate(logged_scenario(log), budget=Budget(steps=50), begun=begun)
+        resumption = logged_motion(log, logged_scenario(log))
+        run = simulate(logged_scenario(log), budget=Budget(steps=50), resumption=resumption)
         assert run.outcome is Outcome.BUDGET_EXCEEDED
         write_log(run, tmp_path / "log.h5")
         log = read_log(tmp_path / "log.h5")
@@ -163,7 +163,7 @@ def test_columns_of_a_log_give_back_the_states_that_they_show(name: str) -> None
     stretches = spans(scenario.profiles, scenario.study.duration)
     times = np.linspace(0.0, scenario.study.duration, 4)
     states = np.random.default_rng(0).normal(0.0, 1e-3, (4, dynamics.state_size))
-    shown = trajectory_of(dynamics, times, states, inputs_of(stretches, times), np.zeros(4), {})
-    begun = Begun(Solver(), {}, columns_of(shown))
-    found, _ = begun.states(dynamics, stretches)
+    shown = observe_trajectory(dynamics, times, states, inputs_of(stretches, times), np.zeros(4), {})
+    resumption = Resumption(Solver(), {}, columns_of(shown))
+    found, _ = resumption.states(dynamics, stretches)
     np.testing.assert_allclose(found, states, rtol=1e-12, atol=1e-15)

@@ -16,7 +16,6 @@ from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.studies import MotionStudy
 from statics import codegen
 from statics.errors import InputError
 
@@ -134,8 +133,7 @@ def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
     check(scenario.scene)
     few = scenario.scene.arm.segments * len(scenario.scene.coordinates) <= FEW_COORDINATES
     dynamics = Dynamics(scenario.scene, codegen.load_interpreted if few else codegen.load)
-    assert isinstance(scenario.study, MotionStudy)
-    end = scenario.study.duration
+    end = scenario.require_motion("only a motion settles").duration
     inputs = spans(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
     rest = [log.equilibria[name][-1] for name in ("bend_angle", "elongation") if name in log.equilibria]
     with np.errstate(all="ignore"):

@@ -34,5 +34,5 @@ def resume(
     found = read_log(unfinished if not log.exists() and unfinished.exists() else log)
     scenario = logged_scenario(found)
     whole = found.path.with_name(found.path.name.removesuffix(UNFINISHED))
-    job = Job(found.path, scenario, whole, begun=logged_motion(found, scenario))
+    job = Job(found.path, scenario, whole, resumption=logged_motion(found, scenario))
     raise typer.Exit(answer(job, as_json))
