@@ -11,14 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_dyn import Scenario, Trajectory, load_scenario
-from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.integrators import Monitor
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn import Trajectory, load_scenario
 from continuum_dyn.scenario.solver import Method, Solver
-from continuum_dyn.scenario.studies import MotionStudy
-from continuum_dyn.simulation.integration import inspector, integrate, warm_up
-from statics import equilibrium
+from continuum_dyn.simulation import Motion
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "step_response.toml"
 METHODS: dict[Method, list[float]] = {
@@ -35,31 +30,22 @@ REAL_TIME = 300.0
 REPEATS = 5
 
 
-class Case:
-    """A motion, ready to be integrated by any method."""
+def seconds(motion: Motion, solver: Solver) -> float:
+    """Median time of the whole integration, samples and energies included."""
+    motion.warm_up(solver)
+    times = []
+    for _ in range(REPEATS):
+        started = time.perf_counter()
+        complete(motion, solver)
+        times.append(time.perf_counter() - started)
+    return statistics.median(times)
 
-    def __init__(self, scenario: Scenario) -> None:
-        assert isinstance(scenario.study, MotionStudy)
-        self.dynamics = Dynamics(scenario.scene)
-        self.stretches = spans(scenario.profiles, scenario.study.duration)
-        self.samples = np.linspace(0.0, scenario.study.duration, scenario.study.samples)
-        rest = equilibrium(scenario.scene, scenario.initial_inputs)
-        self.start = self.dynamics.state(rest.coordinates)
 
-    def run(self, solver: Solver) -> Trajectory:
-        """The motion by that solver."""
-        monitor = Monitor(inspect=inspector(self.dynamics))
-        return integrate(self.dynamics, self.stretches, self.samples, self.start, solver, monitor)
-
-    def seconds(self, solver: Solver) -> float:
-        """Median time of the whole integration, samples and energies included."""
-        warm_up(self.dynamics, solver, self.stretches[0])
-        times = []
-        for _ in range(REPEATS):
-            started = time.perf_counter()
-            self.run(solver)
-            times.append(time.perf_counter() - started)
-        return statistics.median(times)
+def complete(motion: Motion, solver: Solver) -> Trajectory:
+    """The motion by that solver, to its end."""
+    found = motion.complete(solver)
+    assert found is not None
+    return found
 
 
 def tip_error(found: Trajectory, reference: Trajectory) -> float:
@@ -76,20 +62,20 @@ def time_at(error: float, curve: list[tuple[float, float]]) -> float:
 
 def main() -> None:
     """Print every method's curve, then the ratios, and check them."""
-    case = Case(load_scenario(SCENARIO))
-    reference = case.run(Solver("chain", rtol=1e-13, atol=1e-15))
-    other = case.run(Solver("Radau", rtol=1e-12, atol=1e-15))
+    motion = Motion(load_scenario(SCENARIO))
+    reference = complete(motion, Solver("chain", rtol=1e-13, atol=1e-15))
+    other = complete(motion, Solver("Radau", rtol=1e-12, atol=1e-15))
     print(f"two references differ by {tip_error(reference, other):.1e} m")
     curves: dict[str, list[tuple[float, float]]] = {}
     print("method   rtol     tip error     time       steps  segment evaluations")
     for method, tolerances in METHODS.items():
         for rtol in tolerances:
-            solver = Solver(method, rtol=rtol, atol=1e-3 * rtol)
-            found = case.run(solver)
-            error, seconds = tip_error(found, reference), case.seconds(solver)
-            curves.setdefault(method, []).append((error, seconds))
+            solver = Solver(method).with_rtol(rtol)
+            found = complete(motion, solver)
+            error, spent = tip_error(found, reference), seconds(motion, solver)
+            curves.setdefault(method, []).append((error, spent))
             work, steps = found.counters["segment_evaluations"], found.counters["steps"]
-            print(f"{method:7s}  {rtol:.0e}  {error:.2e} m  {seconds * 1e3:7.2f} ms  {steps:6d}  {work:9d}")
+            print(f"{method:7s}  {rtol:.0e}  {error:.2e} m  {spent * 1e3:7.2f} ms  {steps:6d}  {work:9d}")
     for error in ERRORS:
         ours = time_at(error, curves["chain"])
         best, name = min((time_at(error, curves[m]), m) for m in METHODS if m != "chain")

@@ -15,7 +15,8 @@ from numba import njit
 from scaling import SCENARIO, cut
 
 from continuum_dyn import load_scenario
-from continuum_dyn.experiments.cost import Motion
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.simulation import Motion
 
 SEGMENTS = 64
 CALLS, REPEATS = 4000, 15
@@ -106,7 +107,7 @@ def main() -> None:
     scenario = load_scenario(SCENARIO)
     for extension in (True, False):
         motion = Motion(cut(scenario, SEGMENTS, extension))
-        motion.warm_up("chain")
+        motion.warm_up(Solver("chain"))
         counted = operations(motion.dynamics.implicit[0])
         ladder = max(count for name, count in counted.items() if name.startswith("sigma_ladder"))
         print(f"{'with' if extension else 'without'} extension, per segment")

@@ -10,9 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from continuum_dyn import Scenario, load_scenario
-from continuum_dyn.experiments.cost import Motion
+from continuum_dyn.experiments.cost import median_seconds
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.simulation import Motion
 from continuum_dyn.simulation.accuracy import tip_distance
 from statics import Scene
 
@@ -55,12 +56,12 @@ def main() -> None:
         for disks in DISKS:
             case = cut(scenario, disks, extension)
             motion, still = Motion(case), Motion(replace(case, study=MotionStudy(NOTHING, samples=31)))
-            motion.warm_up("chain")
-            found, reference = motion.run(SOLVER), motion.run(REFERENCE)
+            motion.warm_up(SOLVER)
+            found, reference = motion.complete(SOLVER), motion.complete(REFERENCE)
             assert found is not None
             assert reference is not None
             error, steps = tip_distance(found, reference), found.counters["steps"]
-            seconds, call = motion.seconds(SOLVER), still.seconds(SOLVER)
+            seconds, call = median_seconds(motion, SOLVER), median_seconds(still, SOLVER)
             each = (seconds - call) / steps / disks
             rows[extension, disks] = (steps, each, seconds)
             name = "with" if extension else "without"

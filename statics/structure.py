@@ -6,7 +6,7 @@ Numbers are no part of it: a changed stiffness never derives anything anew, a ch
 import hashlib
 import inspect
 import sys
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -72,7 +72,8 @@ def form_of(effect: type[Effect]) -> Effect:
 
     A field that ``pairs`` reads would become a number in a kernel that is kept for every number.
     """
-    names = frozenset(getattr(effect, "__dataclass_fields__", ()))
+    as_dataclass: Any = effect
+    names = {field.name for field in fields(as_dataclass)} if is_dataclass(effect) else set[str]()
 
     def refuse(self: Any, name: str) -> Any:
         if name in names:

@@ -126,9 +126,7 @@ def test_interrupted_while_stability_is_judged_it_keeps_the_equilibrium(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its kernels may have to be compiled first, which takes long."""
-    at_call(
-        "continuum_dyn.simulation.in_motion:_judged", 1, lambda: raise_signal(SIGINT), monkeypatch.setattr
-    )
+    at_call("continuum_dyn.simulation.at_rest:judge", 1, lambda: raise_signal(SIGINT), monkeypatch.setattr)
     run = simulate(edited(JET, tmp_path, ALONG, EQUILIBRIUM, CONSTANT))
     assert (run.outcome, len(run.equilibria)) == (Outcome.INTERRUPTED, 1)
     assert run.message == "interrupted after 1 of 1 points, of unknown stability"

@@ -68,15 +68,15 @@ def check(found: Interrupted, finished: tuple[Outcome, ...] = ()) -> None:
         ("step_response", "statics.equilibria:StaticSolver.solve", 2, "interrupted", "before the motion"),
         (
             "step_response",
-            "continuum_dyn.simulation.in_motion:_moved",
+            "continuum_dyn.simulation.in_motion:_integrate",
             1,
             "interrupted",
             "interrupted at t =",
         ),
-        ("step_response", "continuum_dyn.simulation.in_motion:_end", 1, "settled", ""),
+        ("step_response", "continuum_dyn.simulation.in_motion:_find_end", 1, "settled", ""),
         (
             "slow_ramp",
-            "continuum_dyn.simulation.in_motion:_static_path",
+            "continuum_dyn.simulation.in_motion:_find_static_path",
             1,
             "interrupted",
             "after the motion, 0 points",

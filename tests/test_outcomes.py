@@ -227,7 +227,7 @@ def test_scenario_needs_a_tension_for_each_cable(tension: tuple[Profile, ...]) -
 def test_step_that_was_taken_is_sampled_even_if_the_run_must_end_by_then() -> None:
     """DOP853 asks for the motion's rate again to interpolate."""
     monitor = Monitor(inspect=lambda _t, _y: None)
-    stepper: Any = METHODS["DOP853"](lambda _t, y: -y, 0.0, np.ones(1), 1.0, monitor=monitor)
+    stepper: Any = METHODS["DOP853"].stepper(lambda _t, y: -y, 0.0, np.ones(1), 1.0, monitor=monitor)
     stepper.step()
     monitor.interruption.asked = True
     middle = (stepper.t_old + stepper.t) / 2

@@ -96,7 +96,7 @@ def test_every_corner_of_every_profile_ends_a_span() -> None:
 @pytest.mark.parametrize("method", ["chain", pytest.param("midpoint", marks=pytest.mark.slow), "LSODA"])
 def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     taken: list[tuple[float, float]] = []
-    plain_step = METHODS[method].step
+    plain_step = METHODS[method].stepper.step
 
     def noted(solver: object) -> object:
         message = plain_step(solver)  # pyright: ignore[reportArgumentType]
@@ -106,7 +106,7 @@ def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch, method: Metho
         taken.extend(pairwise(ends.tolist()))
         return message
 
-    monkeypatch.setattr(METHODS[method], "step", noted)
+    monkeypatch.setattr(METHODS[method].stepper, "step", noted)
     corners = (0.0123, 0.0301, 0.0456)
     profile = Table((0.0, *corners), (0.0, 1.0, 0.2, 0.9))
     scene = moving(rone2012(), damping=method != "midpoint")

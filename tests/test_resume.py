@@ -20,8 +20,8 @@ from continuum_dyn.scenario.intervals import inputs_of, spans
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
-from continuum_dyn.simulation.resumption import Begun
-from continuum_dyn.simulation.trajectory import Trajectory, trajectory_of
+from continuum_dyn.simulation.resumption import Resumption
+from continuum_dyn.simulation.trajectory import Trajectory, observe_trajectory
 from statics import Outcome, codegen
 from statics.errors import LogError
 
@@ -163,7 +163,7 @@ def test_columns_of_a_log_give_back_the_states_that_they_show(name: str) -> None
     stretches = spans(scenario.profiles, scenario.study.duration)
     times = np.linspace(0.0, scenario.study.duration, 4)
     states = np.random.default_rng(0).normal(0.0, 1e-3, (4, dynamics.state_size))
-    shown = trajectory_of(dynamics, times, states, inputs_of(stretches, times), np.zeros(4), {})
-    resumption = Begun(Solver(), {}, columns_of(shown))
+    shown = observe_trajectory(dynamics, times, states, inputs_of(stretches, times), np.zeros(4), {})
+    resumption = Resumption(Solver(), {}, columns_of(shown))
     found, _ = resumption.states(dynamics, stretches)
     np.testing.assert_allclose(found, states, rtol=1e-12, atol=1e-15)

@@ -15,7 +15,7 @@ from continuum_dyn.scenario.profiles import Sine, Step
 from continuum_dyn.scenario.solver import Accuracy, Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation.accuracy import tip_distance
-from continuum_dyn.simulation.mesh import between, extrapolated, to_mesh
+from continuum_dyn.simulation.mesh import extrapolate, richardson, search_mesh
 from statics import Arm, Extension, InputError, Outcome, Scene, equilibrium
 from statics.derivation.at_rest import write
 from statics.judges.exact_rod import exact_rod
@@ -55,7 +55,7 @@ def test_known_errors_of_the_arm_of_table_1() -> None:
 def test_two_meshes_tell_where_the_exact_rod_is_with_fourth_order(tension: float) -> None:
     rod = np.array(exact_rod(rone2012(), tension).tip)
     tips = {m: np.array(equilibrium(meshed(m), tension).tip) for m in (4, 8, 16, 32)}
-    left = [np.hypot(*(between(tips[m], tips[2 * m]) - rod)[:2]) for m in (4, 8, 16)]
+    left = [np.hypot(*(richardson(tips[m], tips[2 * m]) - rod)[:2]) for m in (4, 8, 16)]
     np.testing.assert_allclose(np.log2(np.divide(left[:-1], left[1:])), 4.0, atol=0.15)
 
 
@@ -151,7 +151,7 @@ def continuous(scenario: Scenario) -> Trajectory:
     """The motion of the continuous arm, from two fine meshes at tight tolerances."""
     tight = Solver("chain", rtol=1e-11, atol=1e-14)
     runs = [motion(replace(scenario.with_mesh(m, 1.0), accuracy=None, solver=tight)) for m in (16, 32)]
-    return extrapolated(*runs)
+    return extrapolate(*runs)
 
 
 @pytest.mark.slow
@@ -177,7 +177,7 @@ def test_mesh_of_a_ramp_is_chosen_too() -> None:
 
 
 def test_accuracy_that_no_mesh_meets_ends_with_what_was_reached() -> None:
-    found = to_mesh(lambda m: np.array([[1.0 / m, 0.0]]), 1e-9, most=40)
+    found = search_mesh(lambda m: np.array([[1.0 / m, 0.0]]), 1e-9, most=40)
     assert found is not None
     assert not found.reached
     assert found.subsegments == 10
@@ -185,10 +185,10 @@ def test_accuracy_that_no_mesh_meets_ends_with_what_was_reached() -> None:
 
 
 def test_search_for_a_mesh_that_is_stopped_keeps_what_it_found() -> None:
-    found = to_mesh(lambda m: None if m > 8 else np.array([[m**-2.0 + m**-4.0, 0.0]]), 1e-9, most=4000)
+    found = search_mesh(lambda m: None if m > 8 else np.array([[m**-2.0 + m**-4.0, 0.0]]), 1e-9, most=4000)
     assert found is not None
     assert not found.reached
-    assert to_mesh(lambda _: None, 1e-9, most=4000) is None
+    assert search_mesh(lambda _: None, 1e-9, most=4000) is None
 
 
 @pytest.mark.slow

@@ -5,8 +5,6 @@ from typing import Any
 
 from continuum_dyn.scenario.profiles import Constant, Profile, Ramp, Sine, SmoothRamp, Step, Table
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.studies import MotionStudy
-from statics.errors import InputError
 
 
 def at_pace(scenario: Scenario, factor: float) -> Scenario:
@@ -14,14 +12,13 @@ def at_pace(scenario: Scenario, factor: float) -> Scenario:
 
     Raises ``InputError`` for a study without motion.
     """
-    if not isinstance(scenario.study, MotionStudy):
-        raise InputError(f'only a motion has a pace; this is "{scenario.study.kind}".')
+    study = scenario.require_motion("only a motion has a pace")
     return replace(
         scenario,
         drives=tuple(_faster(profile, factor) for profile in scenario.drives),
         load_factors=tuple(_faster(profile, factor) for profile in scenario.load_factors),
         base_motion=tuple(_faster(profile, factor) for profile in scenario.base_motion),
-        study=replace(scenario.study, duration=scenario.study.duration / factor),
+        study=replace(study, duration=study.duration / factor),
     )
 
 

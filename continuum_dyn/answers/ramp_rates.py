@@ -10,7 +10,6 @@ from continuum_dyn.answers.lag import gap, rate_within
 from continuum_dyn.answers.pace import at_pace
 from continuum_dyn.answers.ramp import RampAnswers, RateLag
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import simulate
 from statics.errors import InputError
 
@@ -41,9 +40,9 @@ def _lag_at(scenario: Scenario, own: float, rate: float, progress: Callable[[str
     progress(f"at {rate:.3g} per s")
     pace = rate / own
     faster = at_pace(scenario, pace)
-    assert isinstance(faster.study, MotionStudy)
-    samples = max(faster.study.samples, 1 + ceil((faster.study.samples - 1) / pace))  # no farther apart
-    run = simulate(replace(faster, study=replace(faster.study, samples=samples, static_path=True)))
+    study = faster.require_motion("only a motion has a rate")
+    samples = max(study.samples, 1 + ceil((study.samples - 1) / pace))  # no farther apart
+    run = simulate(replace(faster, study=replace(study, samples=samples, static_path=True)))
     found = [sample for sample, point in enumerate(run.static_path) if point.found]
     if run.tips is None or not found:
         told = run.message or "no equilibrium of its static path was found"

@@ -16,7 +16,6 @@ from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.studies import MotionStudy
 from statics.errors import InputError
 
 BANDS = {"settling_time_5": 0.05, "settling_time_2": 0.02, "settling_time_1": 0.01}
@@ -132,8 +131,7 @@ def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
         scenario = scenario.with_mesh(int(log.arm["subsegments"]), scenario.accuracy.tip)
     check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
-    assert isinstance(scenario.study, MotionStudy)
-    end = scenario.study.duration
+    end = scenario.require_motion("only a motion settles").duration
     inputs = spans(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
     rest = [log.equilibria[name][-1] for name in ("bend_angle", "elongation") if name in log.equilibria]
     with np.errstate(all="ignore"):

@@ -84,18 +84,11 @@ def _modes(scenario: Any) -> Any:
 
 
 def _print_method(scenario: Any) -> None:
-    from continuum_dyn.equations.dynamics import Dynamics
-    from continuum_dyn.integrators import choose
-    from continuum_dyn.scenario.intervals import spans
-    from continuum_dyn.scenario.studies import MotionStudy
-    from statics.equilibria import StaticSolver
+    from continuum_dyn.simulation import Motion
 
-    if not isinstance(scenario.study, MotionStudy) or scenario.solver.method != "auto":
+    if scenario.study.motion is None or not scenario.solver.chooses_method:
         return
-    dynamics = Dynamics(scenario.scene)
-    start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_inputs).coordinates)
-    duration, exact = scenario.study.duration, scenario.accuracy is not None
-    choice = choose(dynamics, start, spans(scenario.profiles, duration)[0], duration, exact)
+    choice = Motion(scenario).choose_method()
     typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 

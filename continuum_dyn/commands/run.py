@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from continuum_dyn.record.comparison import Comparison
     from continuum_dyn.scenario.scenario import Scenario
     from continuum_dyn.simulation import Run
-    from continuum_dyn.simulation.resumption import Begun
+    from continuum_dyn.simulation.resumption import Resumption
     from statics.equilibria import Equilibrium
 
 MAX_ROWS = 20
@@ -43,7 +43,7 @@ class Job:
     source: Path
     scenario: "Scenario"
     log: Path
-    resumption: "Begun | None" = None
+    resumption: "Resumption | None" = None
     earlier: "Log | None" = None
 
 
@@ -122,7 +122,7 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     started = time.perf_counter()
     with StreamedLog(job.log) as streamed:
         with _progress(job.scenario.title, quiet) as progress:
-            result = simulate(job.scenario, progress, sink=streamed, resumption=job.begun)
+            result = simulate(job.scenario, progress, sink=streamed, resumption=job.resumption)
         with stage("log written"):
             streamed.finish(result)
     log = read_log(job.log)

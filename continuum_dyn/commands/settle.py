@@ -43,7 +43,7 @@ def settle(
     found = rest_gap(read)
     make_folder(out)
     picture = out / f"{log.stem}_settle.png"
-    save(settling_plot.settling(read.title, found), picture)
+    save(settling_plot.rest_gap(read.title, found), picture)
     verdicts = judged(asked, found.figures)
     if as_json:
         record = {"log": str(log), "title": read.title, **found.figures, "missing": found.missing}

@@ -68,9 +68,9 @@ def bounds_of(run: Run, expected: Expected, tip_error: float | None, whole: bool
         bounds.append(Bound("energy_trend", found["energy_trend"], expected.energy_trend))
     if method in expected.tip_error:
         bounds.append(Bound("tip_error", tip_error, expected.tip_error[method]))
-    if method == "midpoint":
+    if scenario.solver.has_fixed_step:
         return bounds
-    step_error = (scenario.solver.rtol + scenario.solver.atol) * scenario.scene.arm.total_length
+    step_error = scenario.solver.tolerance(scenario.scene.arm.total_length)
     part = 2.0 * step_error / max(motion.travel, 1e-300)
     ledger = min(1.0, steps * (part + ROUNDING))
     growth = 0.1 * ledger if is_left_alone(scenario) else 2.0 * ledger

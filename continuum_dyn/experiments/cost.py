@@ -1,7 +1,7 @@
-"""What accuracy costs: a motion by every method and tolerance, on every mesh, and without each effect.
+"""Cost of accuracy: a motion by every method and tolerance, on every mesh, and without each effect.
 
-Times are medians of repeats of the whole integration, samples and energies included; beside them stands
-the machine-independent work, in segment evaluations.
+Times are medians of repeats of the whole integration, samples and energies included, beside the
+machine-independent work, in segment evaluations.
 """
 
 import statistics
@@ -11,16 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.integrators import METHODS, Budget, Monitor
+from continuum_dyn.integrators import METHODS, Budget
 from continuum_dyn.modes import rates
-from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Method, Solver
-from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation.accuracy import tip_distance
-from continuum_dyn.simulation.integration import inspector, integrate, warm_up
-from continuum_dyn.simulation.mesh import between
+from continuum_dyn.simulation.mesh import richardson
+from continuum_dyn.simulation.motion import Motion
 from continuum_dyn.simulation.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.errors import InputError
@@ -45,14 +42,14 @@ TARGETS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 """Tip errors (m) whose cheapest settings are the frontier."""
 REPEATS = 5
 BRIEF_REPEATS = 101
-"""Repeats of what takes microseconds."""
+"""Repeats of a computation that takes microseconds."""
 PATIENCE = 3.0
-"""A run that takes longer than this (s) ends its method: tighter tolerances would take longer still."""
+"""Longest time of a run, s; a longer one ends its method, as tighter tolerances would take longer still."""
 
 
 @dataclass(frozen=True)
 class Price:
-    """One way to compute the motion: its largest tip error (m) over the samples, and what it costs."""
+    """One method and tolerance, with its largest tip error (m) over the samples and its cost."""
 
     method: Method
     rtol: float
@@ -64,7 +61,7 @@ class Price:
 
 @dataclass(frozen=True)
 class MeshPrice:
-    """A number of segments from disk to disk: how far the tip rests from the exact rod's, and what it costs.
+    """A number of segments from disk to disk, with the distance of its tip at rest from the exact rod's.
 
     Under the motion's last tensions; ``tip_error`` in m, ``angle_error`` in rad. ``limit_error`` is that of
     the tip extrapolated from this mesh and the one of half as many segments. ``seconds`` is the time of one
@@ -83,10 +80,10 @@ class MeshPrice:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """What leaving an effect out does: to the tip (m, largest over the samples), to time, to stiffness.
+    """Change by leaving an effect out: of the tip (m, largest over the samples), of time, of stiffness.
 
     ``time_ratio`` is the time without it over the time with it, ``seconds`` the latter less the former;
-    ``fastest_rate`` is the largest rate (1/s) of the linearized motion without it. All are None where there
+    ``fastest_rate`` is the largest rate (1/s) of the linearized motion without it. All are None if there
     is no such motion without it.
     """
 
@@ -99,7 +96,7 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class Cost:
-    """The answer to what accuracy costs for a scenario.
+    """The cost of accuracy for a scenario.
 
     ``no_meshes`` says why there are no ``meshes``. ``reference_gap`` (m) is how far the two references
     differ; ``over_budget`` names the methods that were given up, with the tolerance at which.
@@ -115,82 +112,70 @@ class Cost:
     over_budget: dict[str, float]
 
     def frontier(self) -> dict[float, Price | None]:
-        """The cheapest way to each target error (m), or None where no run reached it."""
+        """The cheapest settings for each target error (m), or None if no run reached it."""
         return {
             target: min((p for p in self.prices if p.error <= target), key=lambda p: p.seconds, default=None)
             for target in TARGETS
         }
 
 
-class Motion:
-    """A scenario's motion, ready to be integrated by any method.
+def prepare_motion(scenario: Scenario) -> Motion:
+    """The scenario's motion. Raises ``InputError`` at rest, or without an equilibrium to start from."""
+    scenario.require_motion("cost is asked of a motion")
+    motion = Motion(scenario)
+    _ = motion.start
+    return motion
 
-    Raises ``InputError`` for a study without motion, and where there is no equilibrium to start from.
-    """
 
-    def __init__(self, scenario: Scenario) -> None:
-        if not isinstance(scenario.study, MotionStudy):
-            raise InputError(f'cost is asked of a motion; this is a study of kind "{scenario.study.kind}".')
-        self.dynamics = Dynamics(scenario.scene)
-        self.stretches = spans(scenario.profiles, scenario.study.duration)
-        self.samples = np.linspace(0.0, scenario.study.duration, scenario.study.samples)
-        rest = StaticSolver(scenario.scene).solve(scenario.initial_inputs)
-        if not rest.found:
-            raise InputError(f"the motion has no equilibrium to start from: {rest.outcome}.")
-        self.start = self.dynamics.state(rest.coordinates)
+def median_seconds(motion: Motion, solver: Solver) -> float:
+    """Median time of the whole integration, s."""
+    times = []
+    for _ in range(REPEATS):
+        started = time.perf_counter()
+        motion.complete(solver)
+        times.append(time.perf_counter() - started)
+        if times[-1] > PATIENCE:
+            break
+    return statistics.median(times)
 
-    def run(self, solver: Solver, budget: Budget | None = None) -> Trajectory | None:
-        """The motion by that solver; None if it did not get to its end."""
-        monitor = Monitor(inspect=inspector(self.dynamics), budget=budget or Budget())
-        trajectory = integrate(self.dynamics, self.stretches, self.samples, self.start, solver, monitor)
-        return None if monitor.outcome else trajectory
 
-    def seconds(self, solver: Solver) -> float:
-        """Median time of the whole integration."""
-        times = []
-        for _ in range(REPEATS):
-            started = time.perf_counter()
-            self.run(solver)
-            times.append(time.perf_counter() - started)
-            if times[-1] > PATIENCE:
-                break
-        return statistics.median(times)
+def fastest_rate(motion: Motion) -> float:
+    """Largest rate (1/s) of the motion linearized at its start, which explicit steps must resolve."""
+    if motion.dynamics.scene.arm.massless_nodes:
+        return np.inf
+    return rates(motion.dynamics, motion.start, motion.intervals[0])[1]
 
-    def warm_up(self, method: Method) -> None:
-        """Load what is compiled for the method."""
-        warm_up(self.dynamics, Solver(method), self.stretches[0])
 
-    def fastest_rate(self) -> float:
-        """Largest rate (1/s) of the motion linearized at its start: what explicit steps must resolve."""
-        if self.dynamics.scene.arm.massless_nodes:
-            return np.inf
-        return rates(self.dynamics, self.start, self.stretches[0])[1]
+def _complete(motion: Motion, solver: Solver) -> Trajectory:
+    """The motion by that solver. Raises ``InputError`` if it does not reach its end."""
+    found = motion.complete(solver)
+    if found is None:
+        raise InputError("the motion does not get to its end; see its outcome with the command run.")
+    return found
 
 
 def measure(scenario: Scenario, progress: Callable[[str], None] = lambda _: None) -> Cost:
-    """What accuracy costs for the scenario's motion; ``progress`` is told what is being measured.
+    """Measure the cost of accuracy for the scenario's motion; ``progress`` receives the current step.
 
-    Raises ``InputError`` for a study without motion, or where the references do not reach its end.
+    Raises ``InputError`` for a study without motion, or if the references do not reach its end.
     """
     if scenario.scene.arm.massless_nodes:
         raise InputError(
             'cost compares methods, and nodes without mass leave only "chain". Give the arm\'s core_density.'
         )
-    motion = Motion(scenario)
+    motion = prepare_motion(scenario)
     progress("references")
-    references = [motion.run(solver) for solver in REFERENCES]
-    if references[0] is None or references[1] is None:
-        raise InputError("the motion does not get to its end; see its outcome with the command run.")
-    prices, over_budget = _prices(motion, references[0], progress)
-    meshes, no_meshes = _meshes(scenario, progress)
+    reference, other = (_complete(motion, solver) for solver in REFERENCES)
+    prices, over_budget = _prices(motion, reference, progress)
+    meshes, no_meshes = _meshes(motion, progress)
     return Cost(
         scenario=scenario,
         prices=tuple(prices),
         meshes=tuple(meshes),
         no_meshes=no_meshes,
-        effects=tuple(effects(scenario, motion, progress)),
-        fastest_rate=motion.fastest_rate(),
-        reference_gap=tip_distance(references[0], references[1]),
+        effects=tuple(effects(motion, progress)),
+        fastest_rate=fastest_rate(motion),
+        reference_gap=tip_distance(reference, other),
         over_budget=over_budget,
     )
 
@@ -201,26 +186,24 @@ def _prices(
     prices: list[Price] = []
     over_budget: dict[str, float] = {}
     for method in _in_order(METHODS):
-        motion.warm_up(method)
+        motion.warm_up(Solver(method))
         for rtol in TOLERANCES[method]:
             progress(f"{method}, rtol {rtol:.0e}")
-            solver = Solver(method, rtol=rtol, atol=1e-3 * rtol)
-            found = motion.run(solver, Budget(seconds=PATIENCE))
+            solver = Solver(method).with_rtol(rtol)
+            found = motion.complete(solver, Budget(seconds=PATIENCE))
             if found is None:
                 over_budget[method] = rtol
                 break
             counters = found.counters
             work = counters["segment_evaluations"]
             error = tip_distance(found, reference)
-            prices.append(Price(method, rtol, error, motion.seconds(solver), counters["steps"], work))
+            prices.append(Price(method, rtol, error, median_seconds(motion, solver), counters["steps"], work))
     return prices, over_budget
 
 
-def _meshes(scenario: Scenario, progress: Callable[[str], None]) -> tuple[list[MeshPrice], str]:
+def _meshes(motion: Motion, progress: Callable[[str], None]) -> tuple[list[MeshPrice], str]:
     """The equilibrium under the last tensions and the motion on every mesh; or why there is no exact rod."""
-    assert isinstance(scenario.study, MotionStudy)
-    last = spans(scenario.profiles, scenario.study.duration)[-1]
-    tension = last.inputs(np.array([last.end]))[0]
+    scenario, tension = motion.scenario, motion.last_inputs
     progress("exact rod")
     try:
         rod = exact_rod(scenario.scene, tension[: scenario.scene.cables]).tip
@@ -237,7 +220,7 @@ def _meshes(scenario: Scenario, progress: Callable[[str], None]) -> tuple[list[M
         apart = np.abs(tips[subsegments] - rod)
         limit = None
         if subsegments // 2 in tips:
-            limit = float(np.hypot(*(between(tips[subsegments // 2], tips[subsegments]) - rod)[:2]))
+            limit = float(np.hypot(*(richardson(tips[subsegments // 2], tips[subsegments]) - rod)[:2]))
         work = rest.iterations * meshed.scene.arm.segments
         error, angle, moved = float(np.hypot(*apart[:2])), float(apart[2]), _motion_seconds(meshed)
         found.append(MeshPrice(subsegments, error, angle, limit, seconds, work, moved))
@@ -245,12 +228,13 @@ def _meshes(scenario: Scenario, progress: Callable[[str], None]) -> tuple[list[M
 
 
 def _motion_seconds(scenario: Scenario) -> float | None:
+    solver = Solver("chain")
     try:
-        motion = Motion(scenario)
-        motion.warm_up("chain")
+        motion = prepare_motion(scenario)
+        motion.warm_up(solver)
     except InputError:
         return None
-    return motion.seconds(Solver("chain"))
+    return median_seconds(motion, solver)
 
 
 def _timed(work: Callable[[], Equilibrium]) -> tuple[Equilibrium, float]:
@@ -267,28 +251,28 @@ def _in_order(methods: Iterable[str]) -> list[Method]:
     return [method for method in TOLERANCES if method in methods]
 
 
-def effects(
-    scenario: Scenario, motion: Motion, progress: Callable[[str], None] = lambda _: None
-) -> list[LeftOut]:
-    """Each effect left out in turn, at a tolerance at which the integration's own error does not show."""
-    solver = Solver("chain", rtol=1e-9, atol=1e-12)
-    whole, seconds = motion.run(solver), motion.seconds(solver)
-    assert whole is not None
+def effects(motion: Motion, progress: Callable[[str], None] = lambda _: None) -> list[LeftOut]:
+    """Each effect left out in turn, at a tolerance at which the integration's own error does not show.
+
+    Raises ``InputError`` if the motion with all effects does not reach its end.
+    """
+    solver, scenario = Solver("chain", rtol=1e-9, atol=1e-12), motion.scenario
+    whole, seconds = _complete(motion, solver), median_seconds(motion, solver)
     found = []
     for effect in scenario.scene.effects:
         if effect.name == "inertia":
             continue
         progress(f"without {effect.name}")
         try:
-            without = Motion(scenario.without(effect.name))
-            without.warm_up("chain")
+            without = prepare_motion(scenario.without(effect.name))
+            without.warm_up(solver)
         except InputError:
             found.append(LeftOut(effect.name))
             continue
-        trajectory = without.run(solver, Budget(seconds=10.0 * PATIENCE))
+        trajectory = without.complete(solver, Budget(seconds=10.0 * PATIENCE))
         if trajectory is None:
             found.append(LeftOut(effect.name))
             continue
-        shift, spent = tip_distance(trajectory, whole), without.seconds(solver)
-        found.append(LeftOut(effect.name, shift, spent / seconds, without.fastest_rate(), seconds - spent))
+        shift, spent = tip_distance(trajectory, whole), median_seconds(without, solver)
+        found.append(LeftOut(effect.name, shift, spent / seconds, fastest_rate(without), seconds - spent))
     return found

@@ -11,7 +11,7 @@ from continuum_dyn.integrators import Budget
 from continuum_dyn.scenario.expect import Expected
 from continuum_dyn.scenario.reading import load_expecting
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.solver import Method, Solver
+from continuum_dyn.scenario.solver import FIXED_STEP, Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import Run, simulate
 from continuum_dyn.simulation.accuracy import tip_distance
@@ -72,10 +72,7 @@ def load_cases(path: Path) -> list[HardCase]:
     scenario, expect = load_expecting(path)
     if expect is None:
         raise InputError(f"{path}: expects nothing. Give [expect] outcome, and steps of each method.")
-    if not isinstance(scenario.study, MotionStudy):
-        raise InputError(
-            f'{path}: [expect] is about a motion; this is a study of kind "{scenario.study.kind}".'
-        )
+    scenario.require_motion(f"{path}: [expect] is about a motion")
     extends, name = scenario.scene.has("extension"), path.stem
     other = expect.without_extension if extends else expect.with_extension
     if (expect.with_extension if extends else expect.without_extension) is not None:
@@ -120,16 +117,15 @@ def judge(
 def _reference(case: HardCase) -> Trajectory | None:
     """The motion by the case's last method at tighter tolerances; None if it ended otherwise than it must."""
     rtol = max(TIGHTEST, TIGHTER * case.scenario.solver.rtol)
-    tight = replace(case.scenario.solver, method=case.reference, step=None, rtol=rtol, atol=1e-3 * rtol)
+    tight = replace(case.scenario.solver, method=case.reference, step=None).with_rtol(rtol)
     run = simulate(_as_far_as_claimed(case, tight))
     return run.trajectory if run.outcome is _outcome(case, case.reference) else None
 
 
 def _as_far_as_claimed(case: HardCase, solver: Solver) -> Scenario:
     """The scenario by that method, up to the sample that it goes to."""
-    scenario, study = replace(case.scenario, solver=solver), case.scenario.study
-    until = case.expected.until.get(solver.method)
-    assert isinstance(study, MotionStudy)
+    scenario, until = replace(case.scenario, solver=solver), case.expected.until.get(solver.method)
+    study = scenario.require_motion("[expect] is about a motion")
     if until is None:
         return scenario
     between = study.duration / (study.samples - 1)
@@ -145,7 +141,7 @@ def _outcome(case: HardCase, method: Method) -> Outcome:
 
 def _verdict(case: HardCase, method: Method, reference: Trajectory | None, budget: Budget) -> Verdict:
     claimed, solver = method in case.expected.steps, case.scenario.solver
-    step = solver.step if method == "midpoint" else None
+    step = solver.step if method in FIXED_STEP else None
     try:
         scenario = _as_far_as_claimed(case, replace(solver, method=method, step=step))
         run = simulate(scenario, budget=budget)

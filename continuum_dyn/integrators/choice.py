@@ -1,10 +1,11 @@
-"""Which method suits a motion, and why; and which cannot do it."""
+"""Choice of the method that suits a motion, and a check whether a method can integrate it."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.integrators.methods import METHODS
 from continuum_dyn.modes import rates
 from continuum_dyn.scenario.intervals import Span
 from continuum_dyn.scenario.scenario import dissipated_by
@@ -15,9 +16,9 @@ from statics.scene import Scene
 STIFF = 10.0
 """Ratio of fastest to slowest rate above which implicit steps cost less: measured on arms of 1 to 8 disks."""
 FEW = 64
-"""Coordinates above which an arm is stiff without asking: the ratio grows with the square of their number."""
+"""Largest number of coordinates whose rates are computed: the ratio grows with its square."""
 MANY_PERIODS = 1000.0
-"""Of the slowest mode: a motion that long without damping is asked for its energy, not for its phase."""
+"""Periods of the slowest mode above which an undamped motion needs its energy right rather than its phase."""
 
 
 class Choice(NamedTuple):
@@ -30,7 +31,7 @@ class Choice(NamedTuple):
 def choose(dynamics: Dynamics, start: np.ndarray, span: Span, duration: float, exact: bool = False) -> Choice:
     """The method for ``method = "auto"``, from the modes of the motion linearized at its start.
 
-    ``exact`` says that an accuracy in metres is asked for.
+    ``exact`` says that an accuracy in metres is requested.
     """
     scene = dynamics.scene
     if scene.arm.massless_nodes:
@@ -53,10 +54,10 @@ def choose(dynamics: Dynamics, start: np.ndarray, span: Span, duration: float, e
 
 
 def check(scene: Scene, method: Method) -> None:
-    """Raises ``InputError`` where the method cannot integrate the scene."""
+    """Raise ``InputError`` if the method cannot integrate the scene."""
     damping = dissipated_by(scene)
     of_core = [effect for effect in scene.effects if effect.place == "segment" and effect.name in damping]
-    if scene.arm.massless_nodes and (method != "chain" or not of_core):
+    if scene.arm.massless_nodes and not (METHODS[method].moves_massless_nodes and of_core):
         raise InputError(
             "some nodes carry no mass: only damping of the core can move them, and only method "
             f'"chain"; this is a {"damped" if of_core else "free"} motion by "{method}". '

@@ -21,7 +21,7 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class Budget:
-    """What one run may cost at most; by default what ``Solver`` says."""
+    """Largest cost of one run; by default that of ``Solver``."""
 
     steps: int = Solver.max_steps
     seconds: float = Solver.max_seconds
@@ -31,7 +31,7 @@ class Budget:
         return time.monotonic() - started > self.seconds
 
     def spent_on(self, items: Iterable[Item], started: float) -> Iterator[Item]:
-        """The items that come before the seconds from ``started`` are used up."""
+        """Yield the items that come before the seconds from ``started`` are used up."""
         for item in items:
             if self.is_spent(started):
                 return
@@ -44,9 +44,9 @@ class StepAbandonedError(Exception):
 
 @dataclass
 class Monitor:
-    """Watches a run over all of its spans; ``outcome`` is set when a bound is broken.
+    """Watches a run over all of its intervals; ``outcome`` is set when a bound is broken.
 
-    ``inspect(t, y)`` returns the outcome and the words for it where a state is not acceptable, else
+    ``inspect(t, y)`` returns the outcome and a message if a state is not acceptable, else
     None; ``progress(t)`` is called after each step. ``reached`` is the last acceptable time and state.
     """
 
@@ -68,7 +68,7 @@ class Monitor:
         return self.message
 
     def after_step(self, t: float, y: np.ndarray, steps: int) -> str | None:
-        """Count accepted steps and check the last one; a text says that it must stay the last."""
+        """Count accepted steps and check the last one; a returned message says that it must stay the last."""
         self.steps += steps
         found = self.inspect(t, y)
         if found is not None:
@@ -83,7 +83,7 @@ class Monitor:
         return None
 
     def within_step(self) -> None:
-        """Raises ``StepAbandonedError`` where a step must not go on: one of a large arm takes minutes."""
+        """Raise ``StepAbandonedError`` if the step must end now: one of a large arm takes minutes."""
         if self._out_of_time(self.reached[0]):
             raise StepAbandonedError(self.message)
 

@@ -7,8 +7,7 @@ from continuum_dyn.integrators import METHODS
 from continuum_dyn.record import Log
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Solver
-from continuum_dyn.scenario.studies import MotionStudy
-from continuum_dyn.simulation.resumption import Begun
+from continuum_dyn.simulation.resumption import Resumption
 from statics.errors import LogError
 from statics.outcome import Outcome
 
@@ -16,7 +15,7 @@ BROKEN_OFF = (Outcome.INTERRUPTED, Outcome.BUDGET_EXCEEDED)
 """Outcomes that say nothing against going on."""
 
 
-def logged_motion(log: Log, scenario: Scenario) -> Begun | None:
+def logged_motion(log: Log, scenario: Scenario) -> Resumption | None:
     """What the log of that scenario has of its motion; None where it must begin anew.
 
     That is where nothing moved yet, and where an accuracy is sought, by trials. Raises ``LogError`` for a
@@ -27,12 +26,12 @@ def logged_motion(log: Log, scenario: Scenario) -> Begun | None:
             f"{log.path}: the run has ended ({log.outcome}); there is nothing to go on with. "
             f"To run it again: continuum-dyn run {log.path}"
         )
-    if not isinstance(scenario.study, MotionStudy) or scenario.accuracy is not None:
+    if scenario.study.motion is None or scenario.accuracy is not None:
         return None
     if not log.trajectory or not log.trajectory["time"].size:
         return None
     _check_samples(log, scenario)
-    return Begun(_solver(log, scenario), log.counters, log.trajectory)
+    return Resumption(_solver(log, scenario), log.counters, log.trajectory)
 
 
 def _solver(log: Log, scenario: Scenario) -> Solver:

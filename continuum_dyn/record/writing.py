@@ -13,7 +13,6 @@ import numpy as np
 from continuum_dyn.record.datasets import TEXT, whole_file, write_columns
 from continuum_dyn.record.log_format import FORMAT, FORMAT_VERSION, GROUPS
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.studies import MotionStudy
 from statics.equilibria import Equilibrium
 
 if TYPE_CHECKING:
@@ -54,7 +53,7 @@ def attributes_of(run: "Run", complete: bool = True) -> dict[str, Any]:
         attributes["default"] = "trajectory"
     elif any(point.found for point in run.equilibria):
         attributes["default"] = "equilibria"
-    if isinstance(run.scenario.study, MotionStudy):
+    if run.scenario.study.motion is not None:
         attributes |= (run.solver or run.scenario.solver).settings
     for name in ("tip_error", "static_gap"):
         if getattr(run, name) is not None:
@@ -118,8 +117,8 @@ def write_equilibria(file: h5py.File, run: "Run") -> None:
     numbers, points = np.array([number for number, _ in rows]), [row for _, row in rows]
     names = [name for name in GROUPS["equilibria"] if hasattr(points[0], name)]
     columns = {name: values for name in names if (values := _stacked(points, name)) is not None}
-    if isinstance(run.scenario.study, MotionStudy):
-        ends = np.array([0.0, run.scenario.study.duration])
+    if (study := run.scenario.study.motion) is not None:
+        ends = np.array([0.0, study.duration])
         columns["time"] = (run.trajectory.time if run.static_path and run.trajectory else ends)[numbers]
     scales = {"point": numbers + 1} | scales_of(run.scenario, columns)
     write_columns(file.create_group("equilibria"), scales, columns, GROUPS["equilibria"])

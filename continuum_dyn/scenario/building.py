@@ -6,7 +6,6 @@ from typing import Any
 from continuum_dyn.scenario.csv_table import Tables
 from continuum_dyn.scenario.profiles import Constant, Profile
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.studies import RampStudy
 from continuum_dyn.scenario.tables import (
     BaseTable,
     CableTable,
@@ -23,7 +22,7 @@ from statics.scene import Scene
 
 def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     """Build the scenario of a checked file; ``name`` is its title where the file gives none."""
-    is_ramp = isinstance(file.study, RampStudy)
+    is_ramp = file.study.takes_lists
     effects = [
         effect for name in EffectsTable.model_fields if (effect := getattr(file.effects, name)) is not None
     ]

@@ -19,6 +19,7 @@ from continuum_dyn.scenario.expect import Expect
 from continuum_dyn.scenario.messages import explain
 from continuum_dyn.scenario.overrides import overridden
 from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import FIXED_STEP
 from continuum_dyn.scenario.tables import ScenarioFile
 from continuum_dyn.scenario.text import read_text
 from statics.errors import InputError
@@ -93,7 +94,7 @@ def _is_physical(size: float) -> bool:
 def _check_tolerances(content: dict[str, Any]) -> None:
     settings = content.get("solver", {})
     given = [name for name in ("rtol", "atol") if name in settings]
-    if given and settings.get("method") == "midpoint":
+    if given and settings.get("method") in FIXED_STEP:
         raise InputError(
             f'[solver] {" and ".join(given)} beside method = "midpoint": its steps are equal. Give step (s).'
         )

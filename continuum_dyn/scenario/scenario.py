@@ -9,14 +9,10 @@ import numpy as np
 from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, lowest
 from continuum_dyn.scenario.rates import Rate, check_smooth
 from continuum_dyn.scenario.solver import Accuracy, Solver
-from continuum_dyn.scenario.studies import MotionStudy, RampStudy, Study
-from statics.arc_length import check_followable
+from continuum_dyn.scenario.studies import MotionStudy, Study
 from statics.effects import Effect
 from statics.errors import InputError
 from statics.scene import Scene
-
-MAX_STORED = 20_000_000
-"""Most segments times samples that a log may hold."""
 
 
 def dissipated_by(scene: Scene) -> list[str]:
@@ -30,7 +26,7 @@ def _dissipates(scene: Scene, effect: Effect) -> bool:
 
 @dataclasses.dataclass(frozen=True)
 class Scenario:
-    """A scene, what drives each of its cables, and what is asked of it.
+    """A scene, the drive of each of its cables, and the study to make of it.
 
     ``drives`` holds a profile for each cable, or for a ramp study a list for each: of tensions (N), or of
     displacements (m) of a cable that is driven by its length;
@@ -72,26 +68,14 @@ class Scenario:
                 )
         if self.chooses_mesh and self.accuracy is None:
             raise InputError('subsegments = "auto" needs an accuracy to aim at. Add [accuracy] tip, in m.')
-        if self.accuracy is not None and not (self.chooses_mesh or isinstance(self.study, MotionStudy)):
+        if self.accuracy is not None and not self.chooses_mesh and self.study.motion is None:
             raise InputError(
                 f'[accuracy] belongs to a study of motion, or to subsegments = "auto"; this is '
                 f'"{self.study.kind}" with given segments.'
             )
-        if self.solver.method == "midpoint":
+        if self.solver.has_fixed_step:
             self._check_midpoint()
-        if isinstance(self.study, MotionStudy):
-            self._check_motion(self.study)
-        elif isinstance(self.study, RampStudy):
-            if self.study.path == "arc_length":
-                check_followable(self.scene)
-            if len({len(values) for values in self.ramps}) > 1:
-                counts = ", ".join(str(len(values)) for values in self.ramps)
-                raise InputError(
-                    f"tensions and load factors of a ramp must be lists of equal length; they have {counts} "
-                    "entries."
-                )
-        elif not all(isinstance(profile, Constant) for profile in self.profiles):
-            raise InputError('an "equilibrium" study takes one number for each tension and load factor.')
+        self.study.check(self)
 
     def _check_base(self) -> None:
         arm = self.scene.arm
@@ -100,7 +84,7 @@ class Scenario:
                 f"{len(self.base_motion)} profiles given for the motion of a base that "
                 f"{'moves' if arm.base_moves else 'does not move'}. Give x, y and angle of one that moves."
             )
-        if not isinstance(self.study, MotionStudy):
+        if self.study.motion is None:
             raise InputError(
                 f'a base that moves belongs to a study of motion; this is "{self.study.kind}". '
                 "Give numbers for its x, y and angle."
@@ -139,19 +123,9 @@ class Scenario:
                 f'"chain", or leave {" and ".join(damping)} out of [effects].'
             )
 
-    def _check_motion(self, study: MotionStudy) -> None:
-        if not self.scene.has("inertia"):
-            raise InputError(f'a "{study.kind}" study needs inertia. Add inertia = {{}} to [effects].')
-        stored = study.samples * self.scene.arm.segments
-        if stored > MAX_STORED:
-            raise InputError(
-                f"{study.samples} samples of {self.scene.arm.segments} segments would store {stored:.3g} "
-                f"shapes. Allowed: {MAX_STORED:.3g}. Ask for fewer samples."
-            )
-
     @property
     def profiles(self) -> tuple[InPieces, ...]:
-        """What drives a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
+        """Drives of a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
         driven = (*self.drives, *self.load_factors)
         profiles = tuple(p for p in driven if not isinstance(p, tuple))
         if len(profiles) != len(driven):
@@ -161,7 +135,7 @@ class Scenario:
         return (*profiles, *self._others(profiles))
 
     def _others(self, driven: tuple[Any, ...]) -> tuple[InPieces, ...]:
-        """What drives a motion beside cables and loads, and the rates of cables that are driven by length."""
+        """The base's motion, and the rates of cables that are driven by length."""
         pose, motion = self._of_base
         drawn_in = (driven[number] for number in self.scene.driven_by_length)
         rates = (Constant(0.0) if isinstance(drive, tuple) else Rate(drive) for drive in drawn_in)
@@ -169,7 +143,7 @@ class Scenario:
 
     @property
     def _of_base(self) -> tuple[tuple[InPieces, ...], tuple[InPieces, ...]]:
-        """Its pose; and where it moves its velocities and its accelerations."""
+        """Pose of the base; and, if it moves, its velocities and accelerations."""
         arm = self.scene.arm
         if not arm.base_moves:
             return (() if arm.base is None else tuple(map(Constant, arm.base_pose))), ()
@@ -185,18 +159,24 @@ class Scenario:
             raise InputError('a "ramp" study takes lists of tensions and load factors, or numbers.')
         return lists
 
+    def require_motion(self, reason: str) -> MotionStudy:
+        """The study, if the arm moves in it. Raises ``InputError``, with that reason, if it does not."""
+        if self.study.motion is None:
+            raise InputError(f'{reason}; this is "{self.study.kind}".')
+        return self.study.motion
+
     def with_mesh(self, subsegments: int, tip: float) -> "Scenario":
-        """The same with that many segments from disk to disk, in motion to within ``tip`` (m)."""
+        """The scenario with that many segments from disk to disk, in motion to within ``tip`` (m)."""
         arm = dataclasses.replace(self.scene.arm, subsegments=subsegments)
         return dataclasses.replace(
             self,
             scene=Scene(arm, self.scene.effects),
-            accuracy=Accuracy(tip) if isinstance(self.study, MotionStudy) else None,
+            accuracy=None if self.study.motion is None else Accuracy(tip),
             chooses_mesh=False,
         )
 
     def without(self, effect: str) -> "Scenario":
-        """The same without the effect of that name, and without what drove it."""
+        """The scenario without the effect of that name, and without the drives that only it used."""
         scene = self.scene.without(effect)
         return dataclasses.replace(
             self,

@@ -1,5 +1,6 @@
 """The integrator of a motion, its tolerances and its budgets."""
 
+from dataclasses import replace
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -9,6 +10,8 @@ from statics.errors import InputError
 from statics.support.checked import STRICT, Positive
 
 Method = Literal["auto", "chain", "explicit", "midpoint", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+FIXED_STEP: tuple[Method, ...] = ("midpoint",)
+"""Methods that take steps of equal size: they have a ``step`` in place of tolerances."""
 
 
 @dataclass(frozen=True, config=STRICT)
@@ -35,25 +38,43 @@ class Solver:
     ] = 3600.0
 
     def __post_init__(self) -> None:
-        if self.step is not None and self.method != "midpoint":
+        if self.step is not None and not self.has_fixed_step:
             raise InputError(
                 f'[solver] step belongs to method = "midpoint"; "{self.method}" chooses its steps by rtol '
                 "and atol. Give those, or that method."
             )
 
     @property
+    def chooses_method(self) -> bool:
+        """Whether the program chooses the method."""
+        return self.method == "auto"
+
+    @property
+    def has_fixed_step(self) -> bool:
+        """Whether the method takes a ``step``; otherwise it has tolerances."""
+        return self.method in FIXED_STEP
+
+    def tolerance(self, length: float) -> float:
+        """Largest displacement (m) of any node by the error of one step, in an arm of that length (m)."""
+        return (self.rtol + self.atol) * length
+
+    def with_rtol(self, rtol: float) -> "Solver":
+        """The same method with that relative tolerance, and an absolute one in proportion."""
+        return replace(self, rtol=rtol, atol=1e-3 * rtol)
+
+    @property
     def settings(self) -> dict[str, str | float]:
-        """The method and what it goes by, by name."""
-        if self.method == "midpoint":
+        """The method with its tolerances or its step, by name."""
+        if self.has_fixed_step:
             return {"method": self.method} | ({} if self.step is None else {"step": self.step})
         return {"method": self.method, "rtol": self.rtol, "atol": self.atol}
 
 
 @dataclass(frozen=True, config=STRICT)
 class Accuracy:
-    """How close the tip must be to the exact motion of the same segments.
+    """Largest distance of the tip from the exact motion of the same segments.
 
-    The program chooses the tolerances, and checks. If it chooses the segments, too, the error is that
+    The program chooses the tolerances, and checks. If it chooses the segments, too, the error is measured
     against the continuous arm.
     """
 

@@ -1,4 +1,4 @@
-"""From a scenario to its answer: equilibria, and the motion between them.
+"""Scenarios come in; their answers, equilibria and motions between them, go out.
 
 What is exported is loaded when it is first used.
 """
@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING
 from statics.support.lazy_names import loaded_when_asked_for
 
 if TYPE_CHECKING:
-    from continuum_dyn.simulation.in_motion import Run, Sink, simulate
+    from continuum_dyn.simulation.entry import simulate
+    from continuum_dyn.simulation.motion import Motion
+    from continuum_dyn.simulation.resumption import Resumption
+    from continuum_dyn.simulation.run import Run, Sink
+    from continuum_dyn.simulation.trajectory import Trajectory
 
-__all__ = ["Run", "Sink", "simulate"]
+__all__ = ["Motion", "Resumption", "Run", "Sink", "Trajectory", "simulate"]
 
 __getattr__ = loaded_when_asked_for(__file__)

@@ -1,8 +1,8 @@
-"""A motion as accurate as asked, in metres, and checked.
+"""Search for the tolerance at which a motion is as accurate as requested, in metres.
 
-The tolerance is found by trial: each run is held against one at a tenth of its tolerance, and their largest
-tip distance over the samples is the estimate of the looser one's error. It is an estimate of the
-integration's error; the error of the mesh is not in it.
+The search is by trial: each run is compared with one at a tenth of its tolerance, and their largest tip
+distance over the samples is the estimate of the looser one's error. It is an estimate of the integration's
+error; the error of the mesh is not in it.
 """
 
 from collections.abc import Callable
@@ -14,29 +14,34 @@ from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.trajectory import Trajectory
 
 LOOSEST, TIGHTEST = 1e-2, 1e-13
-"""Relative tolerances between which is searched."""
+"""Bounds of the relative tolerance."""
 AIM = 0.3
-"""Part of what is asked that the search aims at."""
+"""Part of the requested accuracy that the search aims at."""
 ENOUGH = (1 / 15, 0.6)
-"""Parts of what is asked between which an estimate is taken."""
+"""Parts of the requested accuracy between which an estimate ends the search."""
 MOST_TRIALS = 8
 SLOPE = 0.85
-"""Error goes with about this power of the tolerance."""
+"""Power of the tolerance that the error is about proportional to."""
 
 
 @dataclass(frozen=True)
 class Accurate:
     """A motion with the settings that were found for it and the estimate (m) of its largest tip error.
 
-    ``reached`` is False where no tolerance was tight enough; ``trials`` holds the tolerances tried and
-    their estimates.
+    ``reached`` is False if no tolerance was tight enough; ``trials`` holds the tolerances tried and their
+    estimates.
     """
 
     trajectory: Trajectory
     solver: Solver
     estimate: float
     reached: bool
-    trials: tuple[tuple[float, float], ...]
+    trials: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """Larger for the better one: loosest of those that reached the accuracy, else closest to it."""
+        return self.reached, self.solver.rtol if self.reached else -self.estimate
 
 
 def tip_distance(first: Trajectory, second: Trajectory) -> float:
@@ -48,39 +53,32 @@ def tip_distance(first: Trajectory, second: Trajectory) -> float:
     return float(np.hypot(x, y).max())
 
 
-def to_accuracy(
-    run: Callable[[Solver], Trajectory | None], solver: Solver, tip: float, scale: float
+def search_tolerance(
+    run: Callable[[Solver], Trajectory | None], solver: Solver, tip: float, length: float
 ) -> Accurate | None:
-    """The loosest motion found whose tip error is estimated below ``tip`` (m); ``scale`` is the arm's length.
+    """The loosest motion found whose tip error is estimated below ``tip`` (m), in an arm of that length (m).
 
-    ``run`` integrates with the given settings, and returns None where it was stopped; then so does this,
-    unless some pair of runs was done by then: the best of them is returned as not reached.
+    ``run`` integrates with the given settings, and returns None if it was stopped. Then the search returns
+    the best motion so far as not reached, or None if no pair of runs was complete.
     """
-    rtol = float(np.clip(tip / scale / 10.0, TIGHTEST, LOOSEST))
+    rtol = float(np.clip(tip / length / 10.0, TIGHTEST, LOOSEST))
     tried: dict[float, Trajectory] = {}
     trials: list[tuple[float, float]] = []
     best: Accurate | None = None
-    for _ in range(MOST_TRIALS):
+    while True:
         for tolerance in (rtol, 0.1 * rtol):
             if tolerance not in tried:
-                trajectory = run(replace(solver, rtol=tolerance, atol=1e-3 * tolerance))
+                trajectory = run(solver.with_rtol(tolerance))
                 if trajectory is None:
                     return best and replace(best, reached=False, trials=tuple(trials))
                 tried[tolerance] = trajectory
         estimate = tip_distance(tried[rtol], tried[0.1 * rtol])
         trials.append((rtol, estimate))
-        reached = estimate <= ENOUGH[1] * tip
-        if best is None or (reached, rtol if reached else -estimate) > (best.reached, _rank(best)):
-            settings = replace(solver, rtol=rtol, atol=1e-3 * rtol)
-            best = Accurate(tried[rtol], settings, estimate, reached, ())
+        found = Accurate(tried[rtol], solver.with_rtol(rtol), estimate, estimate <= ENOUGH[1] * tip)
+        best = found if best is None else max(best, found, key=lambda each: each.rank)
         further = rtol * (AIM * tip / max(estimate, 1e-3 * tip)) ** (1.0 / SLOPE)
         further = float(np.clip(further, TIGHTEST, LOOSEST))
-        if (reached and estimate >= ENOUGH[0] * tip) or further == rtol:
-            break
+        is_enough = found.reached and estimate >= ENOUGH[0] * tip
+        if is_enough or further == rtol or len(trials) == MOST_TRIALS:
+            return replace(best, trials=tuple(trials))
         rtol = further
-    assert best is not None
-    return replace(best, trials=tuple(trials))
-
-
-def _rank(best: Accurate) -> float:
-    return best.solver.rtol if best.reached else -best.estimate

@@ -1,23 +1,23 @@
-"""Whether the energies of a motion add up: an account of its own, which no error control looks at."""
+"""A check that the energies of a motion add up, independent of all error control."""
 
 from continuum_dyn.simulation.trajectory import Trajectory
 
-OPEN = 0.1
-"""Part of the largest energy that may be unaccounted for in a motion that its tolerance resolves well."""
+TOLERATED = 0.1
+"""Largest part of the energy that may be unaccounted for if the tolerance is far below the travel."""
 PER_TOLERANCE = 10.0
-"""And for each part that the tolerance is of the travel: energies go with the square of displacements."""
+"""Increase of that part with the ratio of tolerance to travel: energies go with displacements squared."""
 
 
-def broken_ledger(found: Trajectory, tolerance: float) -> str | None:
-    """In words, that so much energy is unaccounted for that the motion cannot be the scene's; else None.
+def unbalanced_message(found: Trajectory, tolerance: float) -> str | None:
+    """Message about a gap in the energies that is too large for a motion of the scene, otherwise None.
 
-    ``tolerance`` is the displacement (m) that one step's error may make. A motion that is hardly larger may
-    do with its energy what it likes.
+    ``tolerance`` is the largest displacement (m) by the error of one step. A motion that is hardly larger
+    passes whatever its energies.
     """
     if found.time.size == 0 or found.travel == 0.0:
         return None
     gap, whole = float(abs(found.ledger_gap).max()), found.largest_energy
-    if gap <= (OPEN + PER_TOLERANCE * tolerance / found.travel) * whole:
+    if gap <= (TOLERATED + PER_TOLERANCE * tolerance / found.travel) * whole:
         return None
     return (
         f"energies do not add up: {gap:.2g} J of at most {whole:.2g} J are not accounted for, so the motion "

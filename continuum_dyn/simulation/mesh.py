@@ -1,7 +1,7 @@
-"""How many segments an arm needs from disk to disk for its tip to be as exact as asked, in metres.
+"""Search for the number of segments from disk to disk at which the tip is as exact as requested, in metres.
 
-The error of a mesh falls with the square of its number of segments, so two meshes tell where the continuous
-arm is, with an error that falls with the fourth power (Richardson 1911, Phil. Trans. A 210). Meshes of m,
+The error of a mesh falls with the square of its number of segments, so two meshes give the continuous
+arm, with an error that falls with the fourth power (Richardson 1911, Phil. Trans. A 210). Meshes of m,
 2 m and 4 m segments from disk to disk check each other.
 """
 
@@ -16,7 +16,7 @@ from continuum_dyn.simulation.trajectory import Trajectory
 from statics.equilibria import Equilibrium
 
 AIM = 0.5
-"""Part of what is allowed that the search aims at."""
+"""Part of the allowed error that the search aims at."""
 MOST_TRIALS = 5
 
 Poses = TypeVar("Poses", Trajectory, Equilibrium)
@@ -24,10 +24,10 @@ Poses = TypeVar("Poses", Trajectory, Equilibrium)
 
 @dataclass(frozen=True)
 class Mesh:
-    """A number of segments from disk to disk, with the estimate (m) of the largest tip error that is left.
+    """A number of segments from disk to disk, with the estimate (m) of the remaining largest tip error.
 
     ``extrapolated`` says that the disks' poses follow from this mesh and one of twice as many segments.
-    ``reached`` is False where nothing that was tried was enough.
+    ``reached`` is False if no mesh that was tried was fine enough.
     """
 
     subsegments: int
@@ -36,12 +36,12 @@ class Mesh:
     reached: bool
 
 
-def to_mesh(tips: Callable[[int], np.ndarray | None], allowed: float, most: int) -> Mesh | None:
+def search_mesh(tips: Callable[[int], np.ndarray | None], allowed: float, most: int) -> Mesh | None:
     """The coarsest mesh found whose tip error is estimated below ``allowed`` (m).
 
-    ``tips`` returns the tip's places, shape (samples, 2), on a mesh; None where it was stopped, and then so
-    does this, unless a mesh had been found by then. ``most`` is the largest number of segments from disk to
-    disk.
+    ``tips`` returns the tip's positions, shape (samples, 2), on a mesh, or None if its run was stopped; then
+    the search returns the mesh found so far, or None. ``most`` is the largest number of segments from disk
+    to disk.
     """
     found: Mesh | None = None
     subsegments = 1
@@ -50,11 +50,11 @@ def to_mesh(tips: Callable[[int], np.ndarray | None], allowed: float, most: int)
             return found
         if (middle := tips(2 * subsegments)) is None or (fine := tips(4 * subsegments)) is None:
             return found
-        limit = between(middle, fine)
+        limit = richardson(middle, fine)
         plain = _largest(coarse - limit)
         if plain <= allowed:
             return Mesh(subsegments, extrapolated=False, estimate=plain, reached=True)
-        estimate = _largest(between(coarse, middle) - limit) * 16 / 15
+        estimate = _largest(richardson(coarse, middle) - limit) * 16 / 15
         found = Mesh(subsegments, extrapolated=True, estimate=estimate, reached=estimate <= allowed)
         further = min(ceil(subsegments * (estimate / (AIM * allowed)) ** 0.25), most // 4)
         if found.reached or further <= subsegments:
@@ -63,17 +63,17 @@ def to_mesh(tips: Callable[[int], np.ndarray | None], allowed: float, most: int)
     return found
 
 
-def between(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
-    """What two meshes, the second of twice as many segments, have for their limit."""
+def richardson(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
+    """Richardson extrapolation from m and 2m segments."""
     return (4 * fine - coarse) / 3
 
 
-def extrapolated(coarse: Poses, fine: Poses) -> Poses:
-    """The finer one with the disks' poses of the continuous arm; as it is where the coarser one has none."""
+def extrapolate(coarse: Poses, fine: Poses) -> Poses:
+    """The finer of two results with the disks' poses extrapolated; unchanged if the coarser one has none."""
     if isinstance(coarse, Equilibrium) and not coarse.found:
         return fine
     names = ("disk_x", "disk_y", "disk_theta")
-    return replace(fine, **{name: between(getattr(coarse, name), getattr(fine, name)) for name in names})
+    return replace(fine, **{name: richardson(getattr(coarse, name), getattr(fine, name)) for name in names})
 
 
 def _largest(apart: np.ndarray) -> float:

@@ -1,4 +1,4 @@
-"""What is told of equilibria, and of paths of them: in words, for messages."""
+"""Messages about equilibria and equilibrium paths."""
 
 from collections.abc import Sequence
 
@@ -6,14 +6,16 @@ from statics.arc_length import Path
 from statics.equilibria import Critical, Equilibrium
 from statics.outcome import Outcome
 
-MOST_TOLD = 6
-"""Folds, branchings or jumps that a message names."""
+MOST_NAMED = 6
+"""Largest number of folds, branchings or jumps that a message names."""
 
 
-def why(point: Equilibrium, growth: object | None = None, limit: Equilibrium | None = None) -> str:
-    """What to tell of a search that did not end in a stable equilibrium.
+def failure_message(
+    point: Equilibrium, growth: object | None = None, limit: Equilibrium | None = None
+) -> str:
+    """Message about a search that did not end in a stable equilibrium.
 
-    ``growth`` is what grows about it, ``limit`` the equilibrium at the geometric limit on the way there.
+    ``growth`` holds the modes that grow about it, ``limit`` the equilibrium at the geometric limit before it.
     """
     if growth is not None:
         return f"{growth}, {point.drive}"
@@ -21,44 +23,44 @@ def why(point: Equilibrium, growth: object | None = None, limit: Equilibrium | N
         return f"unstable in {point.unstable_directions} directions {point.drive}"
     if point.outcome is Outcome.GEOMETRY_LIMIT:
         meets = "holes meet: the cable's length from hole to hole reaches zero; try less tension"
-        return f"{point.drive} {meets}" if limit is None else f"{at_limit(limit)}, on the way {point.drive}"
+        return (
+            f"{point.drive} {meets}" if limit is None else f"{limit_message(limit)}, on the way {point.drive}"
+        )
     lost = f"no equilibrium found {point.drive} in {point.iterations} iterations"
     return f"{lost}; try a ramp from a lower tension"
 
 
-def at_limit(limit: Equilibrium) -> str:
-    """Where a ramp comes to its geometric limit."""
+def limit_message(limit: Equilibrium) -> str:
+    """Message about the drive at which a ramp reaches its geometric limit."""
     return f"geometric limit {limit.drive}: there holes meet, or a length reaches zero"
 
 
-def told_of_points(points: Sequence[Equilibrium]) -> str:
-    """What is to be known of equilibria that were found: which ones the search left, and which ones jump."""
-    told = []
+def points_message(points: Sequence[Equilibrium]) -> str:
+    """Message about the equilibria of a ramp that jump, or whose search left an unstable one."""
+    parts = []
     for before, point in zip((None, *points), points, strict=False):
         if point.lost_at is not None and before is not None:
-            way = "jumps" if point.jumped else "goes on along another path"
-            told.append(
-                f"{way} between points {before.drive} and {point.drive}: {_what_happens(point.lost_at)}"
-            )
+            verb = "jumps" if point.jumped else "goes on along another path"
+            parts.append(f"{verb} between points {before.drive} and {point.drive}: {_event(point.lost_at)}")
         elif point.left:
-            ways = point.left[-1].unstable_directions
-            told.append(f"{point.drive} left an equilibrium that is unstable in {ways} directions")
-    return "; ".join(_shortened(told))
+            directions = point.left[-1].unstable_directions
+            parts.append(f"{point.drive} left an equilibrium that is unstable in {directions} directions")
+    return "; ".join(_shorten(parts))
 
 
-def told_of_path(path: Path) -> str:
-    """Where a path folds or branches, and how it ended."""
-    told = _shortened([_what_happens(point) for point in path.critical])
+def path_message(path: Path) -> str:
+    """Message about where a path folds or branches, and how it ended."""
+    parts = _shorten([_event(point) for point in path.critical])
     if path.outcome is Outcome.GEOMETRY_LIMIT:
-        told.append(at_limit(path.end))
+        parts.append(limit_message(path.end))
     elif path.message:
-        told.append(f"the path ends {path.end.drive}: {path.message}")
+        parts.append(f"the path ends {path.end.drive}: {path.message}")
     elif not path.end.found:
-        told.append(why(path.end))
-    return "; ".join(told)
+        parts.append(failure_message(path.end))
+    return "; ".join(parts)
 
 
-def _what_happens(point: Equilibrium) -> str:
+def _event(point: Equilibrium) -> str:
     if point.critical is Critical.FOLD:
         return f"the path folds {point.drive}"
     if point.critical is Critical.BRANCHING:
@@ -66,6 +68,6 @@ def _what_happens(point: Equilibrium) -> str:
     return f"the path is lost {point.drive}"
 
 
-def _shortened(told: list[str]) -> list[str]:
-    more = len(told) - MOST_TOLD
-    return told if more <= 0 else [*told[:MOST_TOLD], f"and {more} more"]
+def _shorten(parts: list[str]) -> list[str]:
+    more = len(parts) - MOST_NAMED
+    return parts if more <= 0 else [*parts[:MOST_NAMED], f"and {more} more"]

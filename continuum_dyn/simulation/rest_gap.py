@@ -1,4 +1,4 @@
-"""Whether a motion has come to rest where the statics say that it must."""
+"""Distance of a motion's end from the equilibria that it may settle to."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -9,12 +9,12 @@ TipPose = tuple[float, float, float]
 
 
 def tip_gap(tip: TipPose, rests: Sequence[TipPose]) -> float:
-    """Distance (m) of the tip from where it may rest: from a pose, or from the lines that join several.
+    """Distance (m) of the tip from a pose at rest, or from the lines that join several.
 
-    With friction an arm may come to rest anywhere between the two branches of its equilibria.
+    With friction an arm may rest anywhere between the two branches of its equilibria.
     """
-    joined = pairwise(rests) if len(rests) > 1 else [(rests[0], rests[0])]
-    return min(_from_line(tip, start, end) for start, end in joined)
+    lines = pairwise(rests) if len(rests) > 1 else [(rests[0], rests[0])]
+    return min(_from_line(tip, start, end) for start, end in lines)
 
 
 def _from_line(tip: TipPose, start: TipPose, end: TipPose) -> float:
@@ -25,6 +25,6 @@ def _from_line(tip: TipPose, start: TipPose, end: TipPose) -> float:
     return hypot(away_x - part * along_x, away_y - part * along_y)
 
 
-def settled(gap: float, speed: float, within: float) -> bool:
+def has_settled(gap: float, speed: float, within: float) -> bool:
     """Whether the tip is within that distance (m) of its equilibrium, and slower than that per second."""
     return gap < within and speed < within

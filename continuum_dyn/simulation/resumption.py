@@ -1,36 +1,41 @@
-"""A motion that was broken off, taken up where it was."""
+"""Continuation of an interrupted motion from its last sample."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from continuum_dyn.equations.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span, inputs_of
+from continuum_dyn.integrators import Monitor
+from continuum_dyn.scenario.intervals import Span, inputs_of, spans_from
 from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.simulation.integration import integrate
+from continuum_dyn.simulation.motion import Motion
+from continuum_dyn.simulation.samples import Samples
+from continuum_dyn.simulation.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
-class Begun:
-    """What is known of it: the solver's settings, what it counted, and its samples, one at least.
+class Resumption:
+    """State from which an interrupted motion resumes: solver settings, counters and samples, at least one.
 
-    ``columns`` hold them by glossary name: ``time`` (samples,), coordinates and rates (samples, segments),
-    ``input_work``, ``dissipated_energy``, ``elastic_energy`` and ``step_size`` (samples,). The last sample
-    may lie between the times that samples were asked for.
+    ``columns`` hold the samples by glossary name: ``time`` (samples,), coordinates and rates (samples,
+    segments), ``input_work``, ``dissipated_energy``, ``elastic_energy`` and ``step_size`` (samples,). The
+    last sample may lie between the times that were requested.
     """
 
     solver: Solver
     counters: Mapping[str, int]
     columns: Mapping[str, np.ndarray]
 
-    def states(self, dynamics: Dynamics, stretches: list[Span]) -> tuple[np.ndarray, np.ndarray]:
+    def states(self, dynamics: Dynamics, intervals: list[Span]) -> tuple[np.ndarray, np.ndarray]:
         """States (samples, size) and inputs (samples, inputs) of the samples.
 
-        Where a cable's displacement jumps just after the last of them, what the jump puts into its stretch
-        is added to the input work.
+        If a cable's displacement jumps just after the last of them, the energy that the jump adds to its
+        stretch is added to the input work.
         """
         given = self.columns
-        inputs = inputs_of(stretches, given["time"])
+        inputs = inputs_of(intervals, given["time"])
         pairs = (("bend_angle", "elongation"), ("bend_angle_rate", "elongation_rate"))
         q, u = (np.stack([given[name] for name in names[: dynamics.dofs]], axis=-1) for names in pairs)
         size = (len(q), dynamics.size)
@@ -41,3 +46,16 @@ class Begun:
         if dynamics.scene.driven_by_length:
             states[-1, -2] += seen.ledger["elastic_energy"][-1] - given["elastic_energy"][-1]
         return states, inputs
+
+    def integrate(self, motion: Motion, monitor: Monitor, gathered: Samples) -> Trajectory:
+        """The whole motion, integrated from the last sample on; sampled as one that was not interrupted."""
+        times, dynamics = self.columns["time"], motion.dynamics
+        states, inputs = self.states(dynamics, motion.intervals)
+        kept = np.isin(times, motion.samples)
+        gathered.add(times[kept], states[kept], inputs[kept], self.columns["step_size"][kept])
+        rest = spans_from(motion.intervals, float(times[-1]))
+        if not rest:
+            return gathered.trajectory(dict(self.counters))
+        trajectory = integrate(dynamics, rest, motion.samples, states[-1], self.solver, monitor, gathered)
+        counters = {name: n + self.counters.get(name, 0) for name, n in trajectory.counters.items()}
+        return replace(trajectory, counters=counters)

@@ -1,4 +1,4 @@
-"""A motion at its samples."""
+"""Trajectories: a motion at its samples."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -17,7 +17,7 @@ class Trajectory:
     ``tension`` and ``cable_displacement``, both at the base, (samples, cables), ``load_factor`` (samples,
     driven loads) or None, the base's pose (samples,) or None in an arm without ``base``, coordinates,
     curvature and length (samples, segments), poses (samples, disks).
-    ``step_size`` is that of the integrator's step that a sample lies in, zero where no step led to it.
+    ``step_size`` is that of the integrator's step that a sample lies in, zero if no step led to it.
     ``elongation`` and its rate are None in a scene without extension. ``ledger`` holds energies (J), powers
     (W), and the integrals ``input_work`` and ``dissipated_energy`` (J) by glossary name. ``counters`` are the
     solver's: steps, evaluations, Jacobians, decompositions.
@@ -59,7 +59,7 @@ class Trajectory:
         return self.first(good.size if good.all() else int(np.argmin(good)))
 
     def first(self, count: int) -> "Trajectory":
-        """That many samples from the start on."""
+        """The first samples, that many."""
         return self._part(slice(0, count))
 
     def after(self, count: int) -> "Trajectory":
@@ -98,8 +98,8 @@ class Trajectory:
         return float(np.hypot(self.disk_x - self.disk_x[0], self.disk_y - self.disk_y[0]).max())
 
 
-def joined(blocks: Sequence[Trajectory], counters: dict[str, int]) -> Trajectory:
-    """One trajectory of several that follow each other."""
+def join(blocks: Sequence[Trajectory], counters: dict[str, int]) -> Trajectory:
+    """Concatenate consecutive trajectories."""
     first = blocks[0]
     if len(blocks) == 1:
         return replace(first, counters=counters)
@@ -112,7 +112,7 @@ def joined(blocks: Sequence[Trajectory], counters: dict[str, int]) -> Trajectory
     return replace(first, **columns, ledger=ledger, counters=counters)
 
 
-def trajectory_of(
+def observe_trajectory(
     dynamics: Dynamics,
     times: np.ndarray,
     states: np.ndarray,
@@ -122,7 +122,7 @@ def trajectory_of(
 ) -> Trajectory:
     """The trajectory of states (samples, size) at those times under inputs (samples, inputs).
 
-    ``step_size`` (s), shape (samples,), is zero where no step led to a sample.
+    ``step_size`` (s), shape (samples,), is zero for a sample that no step led to.
     """
     arm = dynamics.scene.arm
     seen = dynamics.observe(states, inputs)

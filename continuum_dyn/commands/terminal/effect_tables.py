@@ -72,10 +72,10 @@ def show_what_to_leave_out(scenario: "Scenario") -> None:
     """Effects that move the tip by less than is asked for, measured by leaving each out in turn."""
     from rich.console import Console
 
-    from continuum_dyn.experiments.cost import Motion, effects
+    from continuum_dyn.experiments.cost import effects, prepare_motion
 
     allowed, said = _allowed(scenario)
-    measured = with_status(scenario.title, lambda progress: effects(scenario, Motion(scenario), progress))
+    measured = with_status(scenario.title, lambda progress: effects(prepare_motion(scenario), progress))
     columns = ("tip moves by", "time it costs", "fastest rate", f"below {length(allowed)}")
     shown = plain_table("", "Left out", *columns)
     for effect in sorted(measured, key=lambda e: inf if e.tip_shift is None else e.tip_shift):

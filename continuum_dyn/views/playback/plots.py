@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 import rerun as rr
 
-from continuum_dyn.scenario.studies import StepResponseStudy
 from continuum_dyn.views.playback.colors import GREY, PALETTE, shades, told_apart
 from continuum_dyn.views.playback.drawing import when
 from continuum_dyn.views.playback.story import Story, spread
@@ -101,7 +100,7 @@ def _tip(story: Story, name: str) -> list[Series]:
         return series
     target = np.where(resting >= 0, story.log.equilibria[name][resting, -1], np.nan)
     series.append(Series("static target", target))
-    if not story.name and story.scenario is not None and isinstance(story.scenario.study, StepResponseStudy):
+    if not story.name and story.scenario is not None and story.scenario.study.settles:
         within = story.scenario.settled_within
         series += [Series("settled band", target + way, is_bound=True) for way in (-within, within)]
     return series

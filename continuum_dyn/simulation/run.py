@@ -1,0 +1,91 @@
+"""The answer to a scenario, and the interface that receives a motion's samples while it runs."""
+
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.simulation.mesh import Mesh
+from continuum_dyn.simulation.messages import failure_message
+from continuum_dyn.simulation.rest_gap import has_settled, tip_gap
+from continuum_dyn.simulation.trajectory import Trajectory
+from continuum_dyn.stability import Growth
+from statics.equilibria import Equilibrium
+from statics.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Run:
+    """The answer to a scenario.
+
+    ``equilibria`` are those of the study; for a motion the first and the last one, and if requested those of
+    every sample in ``static_path``. ``static_gap`` is the distance (m) of the tip from its final
+    equilibrium. ``tip_error`` (m) is the estimate of the largest tip error if an accuracy was requested;
+    ``mesh`` is the mesh that was found, with its part of the error, if the program chose that, too.
+    ``solve_time`` (s) is the solving alone, with kernels loaded.
+    """
+
+    scenario: Scenario
+    outcome: Outcome
+    message: str = ""
+    equilibria: list[Equilibrium] = field(default_factory=list)
+    static_path: list[Equilibrium] = field(default_factory=list)
+    trajectory: Trajectory | None = None
+    static_gap: float | None = None
+    solver: Solver | None = None
+    tip_error: float | None = None
+    mesh: Mesh | None = None
+    solve_time: float = 0.0
+
+    @property
+    def tips(self) -> np.ndarray | None:
+        """Positions of the tip at the samples or points, shape (samples, 2), m; None if some are missing."""
+        if not (self.outcome.answered or self.outcome is Outcome.UNSTABLE_EQUILIBRIUM):
+            return None
+        if self.trajectory is not None:
+            return np.column_stack([self.trajectory.disk_x[:, -1], self.trajectory.disk_y[:, -1]])
+        if not all(point.found for point in self.equilibria):
+            return None
+        return np.array([point.tip[:2] for point in self.equilibria])
+
+    @property
+    def tip(self) -> tuple[float, float, float] | None:
+        """x, y (m) and theta (rad) of the last disk at the end of the run; None if it has no state."""
+        if self.trajectory is not None:
+            return self.trajectory.tip
+        found = [point for point in self.equilibria if point.found]
+        return found[-1].tip if found else None
+
+    def with_trajectory(
+        self, trajectory: Trajectory, ends: list[Equilibrium], growth: Growth | None = None
+    ) -> "Run":
+        """The run with that motion, its distance from ``ends`` and the verdict of a step response.
+
+        ``ends`` are the branches of the final equilibrium; ``growth`` is what grows about the last one.
+        """
+        end, rests = ends[-1], [point.tip for point in ends if point.found]
+        gap = tip_gap(trajectory.tip, rests) if rests else None
+        run = replace(self, trajectory=trajectory, static_gap=gap)
+        if not self.scenario.study.settles:
+            return run
+        if gap is None or end.outcome is not Outcome.COMPLETED:
+            return replace(run, outcome=end.outcome, message=failure_message(end, growth))
+        settled = has_settled(gap, float(trajectory.tip_speed[-1]), self.scenario.settled_within)
+        return replace(run, outcome=Outcome.SETTLED if settled else Outcome.NOT_SETTLED)
+
+
+def interrupted_early(scenario: Scenario) -> Run:
+    """The run that Ctrl-C ended while its kernels were loaded."""
+    return Run(scenario, Outcome.INTERRUPTED, "interrupted before anything was computed")
+
+
+class Sink(Protocol):
+    """Receives a motion's samples while it runs."""
+
+    def begin(self, run: Run) -> None:
+        """Start a motion, or with an accuracy requested a trial; the run holds what is known of it."""
+
+    def add(self, block: Trajectory) -> None:
+        """Append the next samples; those since the last block are in the answer alone."""
