@@ -8,7 +8,7 @@ from playback_pictures import playback_pictures
 
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.answers.ramp import ramp_answers
-from continuum_dyn.answers.settling import rest_gap
+from continuum_dyn.answers.settling import settling
 from continuum_dyn.experiments.cost import measure
 from continuum_dyn.experiments.reproduce import reproduce
 from continuum_dyn.record import read_log, write_log
@@ -35,7 +35,7 @@ def figures(folder: Path) -> dict[str, Figure]:
     log, slow = read_log(step), read_log(logged("slow_ramp", folder))
     return {
         "step_response.png": log_plots.picture(log),
-        "rest_gap.png": settling_plot.settling(log.title, rest_gap(log)),
+        "settling.png": settling_plot.settling(log.title, settling(log)),
         "playback.png": playback,
         "playback_window.png": window,
         "tension_ramp.png": log_plots.picture(read_log(logged("tension_ramp", folder)), ["shapes"]),

@@ -83,7 +83,8 @@ def form_of(effect: type[Effect]) -> Effect:
             )
         return object.__getattribute__(self, name)
 
-    return object.__new__(type(effect.__name__, (effect,), {"__getattribute__": refuse}))
+    form: Any = type(effect.__name__, (effect,), {"__getattribute__": refuse})
+    return object.__new__(form)
 
 
 def source_digest(effect: type[Effect]) -> str:

@@ -37,7 +37,7 @@ SLOW = {
     "docs/how_to/hard_cases.md",
     "docs/how_to/logs.md",
     "docs/how_to/scenario.md",
-    "docs/how_to/rest_gap.md",
+    "docs/how_to/settling.md",
     "docs/how_to/tension_ramp.md",
     "docs/tutorial.md",
 }

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from continuum_dyn import Scenario, load_scenario, simulate
 from continuum_dyn.answers.last_change import last_change
-from continuum_dyn.answers.settling import FIGURES, Settling, rest_gap
+from continuum_dyn.answers.settling import FIGURES, Settling, settling
 from continuum_dyn.cli import app
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.views.figures import settling_plot
@@ -30,7 +30,7 @@ def log_of(scenario: Scenario, folder: Path) -> Path:
 
 
 def settled(scenario: Scenario, folder: Path) -> Settling:
-    return rest_gap(read_log(log_of(scenario, folder)))
+    return settling(read_log(log_of(scenario, folder)))
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def step_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def step(step_log: Path) -> Settling:
-    return rest_gap(read_log(step_log))
+    return settling(read_log(step_log))
 
 
 # ---- figures ----
@@ -62,7 +62,7 @@ def test_ring_down_is_that_of_the_lowest_mode_at_the_last_equilibrium(file: Path
 
 
 def test_step_settles_as_its_damping_ratio_says(step: Settling) -> None:
-    """Overshoot and rest_gap time of a system of second order, which the arm nearly is: its lowest mode."""
+    """Overshoot and settling time of a system of second order, which the arm nearly is: its lowest mode."""
     figures = step.figures
     ratio, speed = figures["mode_damping_ratio"], 2 * pi * (figures["mode_frequency"] or 0.0)
     assert ratio is not None

@@ -49,7 +49,7 @@ class Settling:
     missing: dict[str, str]
 
 
-def rest_gap(log: Log) -> Settling:
+def settling(log: Log) -> Settling:
     """How the motion of a log settles.
 
     Times count from the beginning of the last change of the inputs; overshoot and bands are parts of the
@@ -81,7 +81,7 @@ def rest_gap(log: Log) -> Settling:
 
 def _motion_times(log: Log) -> np.ndarray:
     if not log.trajectory or len(log.trajectory["time"]) < 2:
-        raise InputError(f"{log.path}: nothing moves in this log; rest_gap is asked of motions.")
+        raise InputError(f"{log.path}: nothing moves in this log; settling is asked of motions.")
     if "time" not in log.equilibria or len(log.equilibria["time"]) < 2:
         raise InputError(f"{log.path}: the last equilibrium was not found; there is nothing to settle to.")
     return log.trajectory["time"]

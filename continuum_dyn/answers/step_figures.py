@@ -1,4 +1,4 @@
-"""What control engineers read off a step response: rise time, overshoot, rest_gap times.
+"""What control engineers read off a step response: rise time, overshoot, settling times.
 
 The signal is the part of its travel that a motion has done: 0 where it starts, 1 where it is to rest. Between
 samples it is the cubic spline through them, so that these times are finer than the samples.

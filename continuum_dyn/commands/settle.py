@@ -30,20 +30,20 @@ def settle(
     """Show how the motion of a log settles.
 
     After the last change of what drives the arm, along the straight way of its tip to its last equilibrium:
-    rise time, overshoot, rest_gap times; frequency and damping ratio of the ring-down, beside those of the
+    rise time, overshoot, settling times; frequency and damping ratio of the ring-down, beside those of the
     linear mode at that equilibrium; and the gap that is left. Writes DIR/NAME_settle.png. Exit status:
     1 if an assertion does not hold.
     """
-    from continuum_dyn.answers.settling import FIGURES, rest_gap
+    from continuum_dyn.answers.settling import FIGURES, settling
     from continuum_dyn.record import read_log
     from continuum_dyn.views.figures import settling_plot
 
     asked = parsed(assertions or [], FIGURES)
     read = read_log(log)
-    found = rest_gap(read)
+    found = settling(read)
     make_folder(out)
     picture = out / f"{log.stem}_settle.png"
-    save(settling_plot.rest_gap(read.title, found), picture)
+    save(settling_plot.settling(read.title, found), picture)
     verdicts = judged(asked, found.figures)
     if as_json:
         record = {"log": str(log), "title": read.title, **found.figures, "missing": found.missing}
@@ -84,7 +84,7 @@ def _step_table(found: "Settling") -> Any:
     table.add_row("overshoot", _percent(figures["overshoot"]), "of the travel")
     for percent in (5, 2, 1):
         stays = _time(figures[f"settling_time_{percent}"])
-        table.add_row("rest_gap time" if percent == 5 else "", stays, f"to within {percent} % of the travel")
+        table.add_row("settling time" if percent == 5 else "", stays, f"to within {percent} % of the travel")
     gap = figures["static_gap"]
     table.add_row("gap to static", "none" if gap is None else length(gap), "from the final equilibrium")
     return table

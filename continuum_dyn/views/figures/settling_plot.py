@@ -14,10 +14,10 @@ DEEPEST = 1e-5
 """Part of the travel down to which the distance from rest is drawn."""
 CURVE_POINTS = 2000
 ENOUGH = 3.0
-"""Longest rest_gap times after which no more is drawn."""
+"""Longest settling times after which no more is drawn."""
 
 
-def rest_gap(title: str, found: Settling) -> Figure:
+def settling(title: str, found: Settling) -> Figure:
     """The tip along its travel with its bands, and its distance from rest on a logarithmic axis.
 
     In the latter an exponential decay is a straight line: the envelope of the fitted ring-down.
