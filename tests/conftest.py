@@ -85,7 +85,7 @@ def cantilever(disks: int, *loads: DiskLoad, damping: float = 0.0) -> Scene:
 
 def at_rest(scene: Scene) -> Equilibrium:
     """The equilibrium from straight, by kernels in plain Python."""
-    return StaticSolver(scene, codegen.load_interpreted).solve(np.empty(0))
+    return StaticSolver(scene).solve(np.empty(0))
 
 
 def edited(scenario: Path, folder: Path, *changes: tuple[str, str]) -> Scenario:

@@ -14,7 +14,7 @@ def kernel() -> Any:
     """The kernel of the paper's arm as it would be if no potential of it were known, as plain Python."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(virtual_work, "have_potentials", lambda _groups, _coordinates: False)
-        text = statics_kernel.write(rone2012())
+        text = REST.write(rone2012().structure)
     assert "negative_pivots" not in text
     names: dict[str, Any] = {}
     exec(text.replace("from numba import njit\n", "njit = lambda **_: lambda function: function\n"), names)

@@ -52,7 +52,7 @@ def mounted(scenario: Scenario, **changes: Any) -> Scene:
 
 
 def interpreted(scene: Scene) -> Dynamics:
-    return Dynamics(scene, codegen.load_interpreted)
+    return Dynamics(scene)
 
 
 def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> list[Span]:

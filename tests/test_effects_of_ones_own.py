@@ -79,7 +79,7 @@ def scene_with(effect: Effect, subsegments: int = 1) -> Scene:
 @pytest.mark.parametrize("effect", [HardeningSpring(), Sleeve()], ids=lambda effect: effect.name)
 def test_force_of_an_effect_is_the_gradient_of_its_energy(effect: Effect, subsegments: int) -> None:
     scene = scene_with(effect, subsegments)
-    solver, tension = StaticSolver(scene, load_interpreted), np.array([0.7])
+    solver, tension = StaticSolver(scene), np.array([0.7])
     kernel, q = solver.kernel, random_state(scene, seed=1, bend=0.7)[0]
     chain, residual = np.empty((len(q), kernel.CHAIN_COLUMNS)), np.empty_like(q)
 
@@ -96,4 +96,4 @@ def test_force_of_an_effect_is_the_gradient_of_its_energy(effect: Effect, subseg
 
 def test_quantity_without_a_value_is_named() -> None:
     with pytest.raises(InputError, match="'spring_stiffness' has no value on each disk"):
-        StaticSolver(scene_with(Unvalued()), load_interpreted)
+        StaticSolver(scene_with(Unvalued()))

@@ -33,7 +33,7 @@ def growth(disks: int, push: float, damping: float = 0.0) -> Growth | None:
     scene = cantilever(disks, DiskLoad(disks, (-push, 0.0), follower=True), damping=damping)
     rest = at_rest(scene)
     assert np.abs(rest.bend_angle).max() == 0.0
-    return growth_about(Dynamics(scene, codegen.load_interpreted), rest)
+    return growth_about(Dynamics(scene), rest)
 
 
 def flutter_load(disks: int, damping: float = 0.0) -> float:
@@ -71,7 +71,7 @@ def test_stability_without_damping_is_told_by_divergence_too() -> None:
     for push, grows in ((0.97, False), (1.03, True)):
         load = DiskLoad(16, (-push * np.pi**2 / 4, 0.0))
         scene = cantilever(16, load, DiskLoad(1, follower=True))
-        found = growth_about(Dynamics(scene, codegen.load_interpreted), at_rest(scene))
+        found = growth_about(Dynamics(scene), at_rest(scene))
         assert (found is not None) == grows
         assert found is None or (found.frequency == 0.0 and str(found).startswith("divergence"))
 
@@ -79,7 +79,7 @@ def test_stability_without_damping_is_told_by_divergence_too() -> None:
 def undamped_modes(push: float, *, follower: bool) -> tuple[Mode, ...]:
     """About the straight column of 8 disks under a force along it."""
     scene = cantilever(8, DiskLoad(8, (-push, 0.0), follower=follower), DiskLoad(1, follower=True))
-    dynamics = Dynamics(scene, codegen.load_interpreted)
+    dynamics = Dynamics(scene)
     return modes(dynamics, dynamics.state(np.zeros((8, 1))), still(np.empty(0)))
 
 

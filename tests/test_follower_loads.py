@@ -227,8 +227,8 @@ def test_many_segments_under_a_force_across_the_tip_are_the_elastica(across: flo
 
 def test_scene_without_followers_has_none_in_its_kernel() -> None:
     dead, follower = (cantilever(3, DiskLoad(3, (1.0, 0.0), follower=follows)) for follows in (False, True))
-    assert "follower" not in motion_kernel.write(dead)
-    assert "follower_force_x" in motion_kernel.write(follower)
+    assert "follower" not in MOTION.write(dead.structure)
+    assert "follower_force_x" in MOTION.write(follower.structure)
     assert codegen.kernel_key(dead, motion_kernel.RECIPE) != codegen.kernel_key(
         follower, motion_kernel.RECIPE
     )
@@ -237,7 +237,7 @@ def test_scene_without_followers_has_none_in_its_kernel() -> None:
 def test_scene_names_what_has_no_potential() -> None:
     for loads in ((), (DiskLoad(1),), FOLLOWERS, (DiskLoad(1, driven=True, follower=True),)):
         scene = cantilever(2, *loads)
-        assert derive_statics(scene).conservative == (not scene.without_potential)
+        assert derive_statics(scene.structure).conservative == (not scene.without_potential)
 
 
 def test_follower_of_no_size_is_no_load() -> None:
@@ -302,6 +302,6 @@ def test_bad_follower_is_named_with_what_is_allowed(tmp_path: Path, old: str, ne
 
 def test_undamped_motion_under_a_follower_is_never_left_to_the_midpoint_rule() -> None:
     scene = cantilever(2, DiskLoad(2, (0.0, 0.1), follower=True))
-    dynamics = Dynamics(scene, codegen.load_interpreted)
+    dynamics = Dynamics(scene)
     start, still = dynamics.state(at_rest(scene).coordinates), spans((), 1e5)[0]
     assert choose(dynamics, start, still, 1e5).method == "explicit"

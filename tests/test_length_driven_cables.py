@@ -26,7 +26,7 @@ def driven(*cables: Cable, stiffness: float = 1.0, disks: int = 4) -> Scene:
 
 def at_rest(scene: Scene, *drives: float) -> Equilibrium:
     inputs = np.pad(drives, (0, len(scene.inputs) - len(drives)))
-    return StaticSolver(scene, codegen.load_interpreted).solve(inputs)
+    return StaticSolver(scene).solve(inputs)
 
 
 BY_LENGTH = Cable("upper", 0.008, cable_stiffness=STIFFNESS)
@@ -77,7 +77,7 @@ def test_arm_rests_as_under_the_tension_that_the_length_makes(displacement: floa
 
 def test_ramp_that_a_cable_catches_in_does_not_jump_and_its_path_is_followed() -> None:
     """The path has a corner there, at -0.087 mm: so much does the hanging arm draw out of a slack cable."""
-    solver = StaticSolver(driven(BY_LENGTH), codegen.load_interpreted)
+    solver = StaticSolver(driven(BY_LENGTH))
     displacements = np.array([[-2e-3], [4e-3]])
     inputs = np.hstack([displacements, np.zeros((2, len(solver.scene.inputs) - 1))])
     path, points = follow(solver, inputs), ramp(solver, inputs)

@@ -212,15 +212,15 @@ def test_arm_finds_its_rest_under_a_payload_of_many_disks(weight: float) -> None
 
 def test_arm_without_payloads_has_nothing_of_them_in_its_generated_sources() -> None:
     for scene, there in ((full_scene(2), False), (laden_scene(2), True)):
-        assert ("payload" in motion_kernel.write(scene)) == there
-        assert ("payload" in at_rest.write(scene.at_rest)) == there
+        assert ("payload" in MOTION.write(scene.structure)) == there
+        assert ("payload" in REST.write(scene.at_rest.structure)) == there
 
 
 def test_without_gravity_a_payload_has_no_weight_in_the_generated_source() -> None:
     scene = laden_scene(2)
     floating = Scene(scene.arm, (effect for effect in scene.effects if effect.name != "gravity"))
-    assert "payload" not in at_rest.write(floating.at_rest)
-    assert "gravity_x" not in motion_kernel.write(floating)
+    assert "payload" not in REST.write(floating.at_rest.structure)
+    assert "gravity_x" not in MOTION.write(floating.structure)
 
 
 def test_numbers_of_payloads_compile_nothing_and_one_more_on_a_disk_does() -> None:

@@ -158,7 +158,7 @@ def _cut(log: Log, name: str) -> dict[str, np.ndarray]:
 def test_columns_of_a_log_give_back_the_states_that_they_show(name: str) -> None:
     """A base that moves, and cables that are drawn in, book work that is not in the state."""
     scenario = load_scenario(SCENARIOS / f"{name}.toml")
-    dynamics = Dynamics(scenario.scene, codegen.load_interpreted)
+    dynamics = Dynamics(scenario.scene)
     assert isinstance(scenario.study, MotionStudy)
     stretches = spans(scenario.profiles, scenario.study.duration)
     times = np.linspace(0.0, scenario.study.duration, 4)

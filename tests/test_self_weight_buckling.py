@@ -25,7 +25,7 @@ def kernel(scene: Scene, recipe: codegen.Recipe) -> object:
 def upright(disks: int, load: float) -> StaticSolver:
     """E J = 1, length 1, and weights at the segments' ends that add up to ``load`` (N)."""
     arm = Arm(disks, 1.0 / disks, youngs_modulus=1.0, second_moment=1.0, disk_mass=1.0 / disks)
-    return StaticSolver(Scene(arm, (Bending(), Gravity((-load, 0.0)))), codegen.load_interpreted)
+    return StaticSolver(Scene(arm, (Bending(), Gravity((-load, 0.0)))))
 
 
 def stands_straight(disks: int, load: float) -> bool:

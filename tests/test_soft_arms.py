@@ -64,7 +64,7 @@ def trap() -> StaticSolver:
     arm = Arm.preset(
         "rone2012", disks=64, disk_spacing=0.08 / 64, youngs_modulus=2.10e8, each=Each(disk_mass=tuple(mass))
     )
-    return StaticSolver(Scene(arm, (Bending(), Gravity((0.0, -9.81)))), codegen.load_interpreted)
+    return StaticSolver(Scene(arm, (Bending(), Gravity((0.0, -9.81)))))
 
 
 def plain_newton(solver: StaticSolver) -> np.ndarray:
@@ -98,7 +98,7 @@ def test_plain_newton_is_fooled_where_the_search_is_not() -> None:
 def test_interpreted_search_takes_the_same_way() -> None:
     scene = rone2012(disks=16, stiffness=1e-4, gravity=DIRECTIONS["upright"])
     compiled, interpreted = (
-        StaticSolver(scene, load).solve(np.zeros(1)) for load in (codegen.load, codegen.load_interpreted)
+        StaticSolver(scene, load).solve(np.zeros(1)) for load in (codegen.load)
     )
     assert compiled.iterations == interpreted.iterations
     assert len(compiled.left) == len(interpreted.left)

@@ -70,7 +70,7 @@ class Swept:
     """What the kernel's sweeps leave at coordinates q, shape (segments, 2)."""
 
     def __init__(self, load: str, q: np.ndarray, stiffness: float = 0.0) -> None:
-        self.solver = StaticSolver(scene(len(q), load, stiffness), codegen.load_interpreted)
+        self.solver = StaticSolver(scene(len(q), load, stiffness))
         self.sign = 1.0 if load == "cable" else -1.0
         kernel, (segments, disks) = self.solver.kernel, (self.solver.segments, self.solver.disks)
         self.inputs = np.ones(1) if load == "cable" else np.empty(0)
