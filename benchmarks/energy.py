@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from continuum_dyn import load_scenario
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Budget, Monitor
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span, spans
 from continuum_dyn.scenario.profiles import Step
 from continuum_dyn.scenario.solver import Solver

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse.linalg import LinearOperator, eigs
 
-from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span, spans
 from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.scenario import Scenario

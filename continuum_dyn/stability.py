@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.modes import NEUTRAL, check, linearized, still
+from continuum_dyn.passes.dynamics import Dynamics
 from statics.equilibria import Equilibrium
 from statics.errors import InputError
 from statics.outcome import Outcome

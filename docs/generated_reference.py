@@ -12,8 +12,8 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import continuum_dyn.effects
-import continuum_dyn.equations.dynamics
 import continuum_dyn.modes
+import continuum_dyn.passes.dynamics
 import continuum_dyn.scenario.intervals
 import continuum_dyn.scenario.profiles
 import continuum_dyn.scenario.solver
@@ -271,7 +271,7 @@ PUBLIC: dict[Any, Iterable[str]] = {
     continuum_dyn.scenario.intervals: ["Span", "spans"],
     continuum_dyn.scenario.studies: [study.__name__ for study in STUDIES.values()],
     continuum_dyn.scenario.solver: ["Solver", "Accuracy"],
-    continuum_dyn.equations.dynamics: ["Dynamics", "Observation"],
+    continuum_dyn.passes.dynamics: ["Dynamics", "Observation"],
     continuum_dyn.modes: ["modes_at_rest", "RestModes", "Mode"],
 }
 

@@ -20,9 +20,9 @@ from statics.errors import InputError
 class Structure:
     """What changes the equations of a scene; the derivation is given this and nothing else.
 
-    ``effects`` are the classes of the scene's effects; ``coordinates`` and ``inputs`` the names of a segment's
-    coordinates and of the numbers that drive the scene; ``payloads`` the largest number of them on one disk;
-    ``core_fractions`` where along a segment the core's own mass stands, none for a core without mass.
+    ``effects`` are the classes of the scene's effects; ``coordinates`` and ``inputs`` the names of a
+    segment's coordinates and of the numbers that drive the scene; ``payloads`` the largest number of them on
+    one disk; ``core_fractions`` where along a segment the core's own mass stands, none for a core without mass.
     """
 
     effects: tuple[type[Effect], ...]
@@ -88,7 +88,7 @@ def form_of(effect: type[Effect]) -> Effect:
 
 
 def source_digest(effect: type[Effect]) -> str:
-    """Hash of the file that an effect's class stands in, or of the class where it was typed into a session."""
+    """Hash of the file of an effect's class, or of the class itself if it was typed into a session."""
     file = getattr(sys.modules[effect.__module__], "__file__", None)
     if file is None:
         return hashlib.sha256(inspect.getsource(effect).encode()).hexdigest()

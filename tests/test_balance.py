@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import rone2012
 
-from statics import Outcome, Scene, StaticSolver, search, statics_kernel, virtual_work
+from statics import Outcome, Scene, StaticSolver, search, virtual_work
 
 
 @pytest.fixture(scope="module")

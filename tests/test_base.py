@@ -25,7 +25,6 @@ from statics import (
     StaticSolver,
     codegen,
     disk_loads,
-    statics_kernel,
 )
 from statics.equilibria import Equilibrium
 from statics.judges.exact_rod import exact_rod

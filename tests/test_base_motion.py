@@ -28,7 +28,7 @@ from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.views.playback.arm import moving_parts
 from continuum_dyn.views.playback.measures import measures_of
 from continuum_dyn.views.playback.story import story_of
-from statics import Arm, Base, Bending, Gravity, InputError, Outcome, Scene, codegen
+from statics import Arm, Base, Bending, Gravity, InputError, Outcome, Scene
 from statics.effects import Effect
 
 STILL = Constant(0.0)

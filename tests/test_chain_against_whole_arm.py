@@ -19,8 +19,8 @@ from whole_arm import (
     tapered_scene,
 )
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.equations.families import RECIPE as MOTION
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span
 from statics import codegen, equilibria
 from statics.arm import Cable

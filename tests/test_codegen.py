@@ -11,7 +11,7 @@ from conftest import moving, rone2012
 from continuum_dyn import Scenario, implicit_kernel, motion_kernel, simulate
 from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.studies import MotionStudy
-from statics import Scene, codegen, equilibrium, statics_kernel
+from statics import Scene, codegen, equilibrium
 from statics.derivation.at_rest import RECIPE
 
 

@@ -12,7 +12,7 @@ from whole_arm import WholeArm, directional, heavy_scene, random_state
 
 from continuum_dyn import implicit_kernel, midpoint_kernel, motion_kernel
 from continuum_dyn.effects import Inertia
-from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.passes.dynamics import Dynamics
 from statics import Arm, Bending, Gravity, Payload, Scene, codegen, equilibrium, statics_kernel
 from statics.core_mass import AT_END, AT_POINT, FRACTIONS
 from statics.effects import Effect

@@ -10,8 +10,8 @@ from scipy.signal import argrelmax
 from whole_arm import difference_matrix, gradient, random_state, relative_error
 
 from continuum_dyn.effects import Inertia, LinearDrag, MassDamping, QuadraticDrag, RotaryInertia
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators.choice import check
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span
 from statics import Arm, Bending, Gravity, InputError, Scene
 from statics.effects import Effect

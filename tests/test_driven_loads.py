@@ -9,9 +9,9 @@ import pytest
 from conftest import SCENARIOS, motion
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.equations.families import RECIPE, write
 from continuum_dyn.modes import modes_at_rest
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step, Table
 from continuum_dyn.scenario.solver import Solver

@@ -11,7 +11,6 @@ from whole_arm import difference_matrix, random_state, relative_error
 from statics import Arm, Bending, Cables, Extension, InputError, Scene, StaticSolver
 from statics.effects import Effect, Pair
 from statics.effects.effect import Account, Place
-from statics.kernels.loading import load_interpreted
 from statics.quantities import QUANTITIES, Quantity
 
 

@@ -11,16 +11,16 @@ from typer.testing import CliRunner
 
 from continuum_dyn import simulate
 from continuum_dyn.cli import app
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes, modes_at_rest, still
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.stability import Growth, growth_about
-from statics import DiskLoad, Outcome, codegen
+from statics import DiskLoad, Outcome
 
 # ---- Beck's column ----
 

@@ -14,8 +14,8 @@ from whole_arm import difference_matrix, full_scene, random_state, relative_erro
 
 from continuum_dyn import implicit_kernel, load_scenario, motion_kernel, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import choose
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy

@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import ChainSolver, choose
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, SDIRK4, Tableau
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span, spans
 from continuum_dyn.scenario.profiles import Sine, Step
 from continuum_dyn.scenario.solver import Method, Solver

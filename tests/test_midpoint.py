@@ -25,9 +25,9 @@ from whole_arm import (
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, modes, simulate
 from continuum_dyn.effects import MaterialDamping
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import MidpointSolver
 from continuum_dyn.modes import fastest_frequency
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import write_log
 from continuum_dyn.scenario.intervals import Span, spans
 from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step

@@ -11,8 +11,8 @@ from conftest import ANY_METHOD, MOTION, moving, rone2012
 
 from continuum_dyn import Run, Scenario, simulate
 from continuum_dyn.effects import MaterialDamping
-from continuum_dyn.equations.dynamics import Dynamics, Observation
 from continuum_dyn.integrators import METHODS, Budget, Monitor
+from continuum_dyn.passes.dynamics import Dynamics, Observation
 from continuum_dyn.scenario.intervals import Span
 from continuum_dyn.scenario.profiles import Constant, Profile, Step
 from continuum_dyn.scenario.solver import Method, Solver

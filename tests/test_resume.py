@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 
 from continuum_dyn import Scenario, load_scenario, simulate
 from continuum_dyn.cli import app
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Budget
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.record.resuming import logged_motion
@@ -22,7 +22,7 @@ from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
 from continuum_dyn.simulation.resumption import Resumption
 from continuum_dyn.simulation.trajectory import Trajectory, observe_trajectory
-from statics import Outcome, codegen
+from statics import Outcome
 from statics.errors import LogError
 
 STEP = SCENARIOS / "step_response.toml"

@@ -97,9 +97,7 @@ def test_plain_newton_is_fooled_where_the_search_is_not() -> None:
 
 def test_interpreted_search_takes_the_same_way() -> None:
     scene = rone2012(disks=16, stiffness=1e-4, gravity=DIRECTIONS["upright"])
-    compiled, interpreted = (
-        StaticSolver(scene, load).solve(np.zeros(1)) for load in (codegen.load)
-    )
+    compiled, interpreted = (StaticSolver(scene, load).solve(np.zeros(1)) for load in (codegen.load))
     assert compiled.iterations == interpreted.iterations
     assert len(compiled.left) == len(interpreted.left)
     assert compiled.outcome is interpreted.outcome

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from statics import Arm, Bending, Cable, Cables, DiskLoad, DiskLoads, Extension, Scene, StaticSolver, codegen
+from statics import Arm, Bending, Cable, Cables, DiskLoad, DiskLoads, Extension, Scene, StaticSolver
 
 CURVATURES = [0.0, *(sign * 10.0**power for power in (-300, -160, -8, -2, 0, 1, 2, 3) for sign in (1, -1))]
 """1/m; the last ones bend a segment of 20 mm by 20 rad, three turns."""

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from continuum_dyn import load_scenario
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Monitor
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy

@@ -10,8 +10,8 @@ from scipy.interpolate import CubicSpline
 from continuum_dyn.answers.last_change import LastChange, last_change
 from continuum_dyn.answers.ring_down import FEWEST_SAMPLES, RingDown, fit_ring_down
 from continuum_dyn.answers.step_figures import overshoot, rise_time, settling_time
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.modes import Mode, check, modes, still
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.scenario.intervals import spans

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import runge_kutta
 from continuum_dyn.integrators.runge_kutta import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span
 
 BATCH = 256

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators.methods import METHODS
 from continuum_dyn.modes import rates
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span
 from continuum_dyn.scenario.scenario import dissipated_by
 from continuum_dyn.scenario.solver import Method

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators.chain_solver import ChainSolver
 from continuum_dyn.integrators.guard import Guard
 from continuum_dyn.integrators.midpoint_solver import MidpointSolver
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, Tableau
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span
 from continuum_dyn.scenario.solver import FIXED_STEP, Solver
 

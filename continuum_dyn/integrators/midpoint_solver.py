@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import midpoint
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span
 
 BATCH = 256

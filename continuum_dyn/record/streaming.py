@@ -1,7 +1,7 @@
 """A motion's log, written while the motion is computed: FILE.h5.part, until the answer is there.
 
 HDF5's mode for a single writer and many readers keeps what was flushed readable whenever the writer is
-killed, if no object is made once it has resumption. So the file is made whole, with no samples, before it takes
+killed, if no object is made once it has begun. So the file is made whole, with no samples, before it takes
 its name; blocks of samples are appended; and a copy of it is finished and takes the log's place.
 """
 

@@ -4,8 +4,8 @@ import time
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Budget
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.simulation.messages import failure_message, path_message, points_message
 from continuum_dyn.simulation.run import Run, interrupted_early

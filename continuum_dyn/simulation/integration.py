@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from scipy.integrate import OdeSolver
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import METHODS, Budget, Monitor, check
 from continuum_dyn.integrators.methods import drive_frequency
 from continuum_dyn.modes import fastest_frequency
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span, inputs_of, joined_spans
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.samples import Samples

@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Budget, Choice, Monitor, choose
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Solver

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Monitor
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span, inputs_of, spans_from
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import integrate

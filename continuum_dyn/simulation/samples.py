@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.simulation.trajectory import Trajectory, join, observe_trajectory
 
 INTERVAL = 1.0

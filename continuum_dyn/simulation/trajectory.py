@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from continuum_dyn.equations.dynamics import Dynamics
+from continuum_dyn.passes.dynamics import Dynamics
 from statics.equilibria import shape_of
 
 

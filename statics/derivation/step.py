@@ -16,8 +16,7 @@ class Step:
     ``results`` and ``carried`` map a name to its value before the first segment and after this one, the
     former a number or an expression of what the first segment knows; results are what the pass returns.
     ``given`` are the numbers that the caller of the pass chooses. ``arrays`` are the step's arguments,
-    ``stores`` those that it writes, one column for each expression. A step that ``replaces`` another leaves
-    its values where that one would: later passes read those of the one that ran last.
+    ``stores`` those that it writes, one column for each expression.
     """
 
     name: str
@@ -29,4 +28,3 @@ class Step:
     carried: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     stores: dict[str, list[Any]] = field(default_factory=dict)
     given: tuple[str, ...] = ()
-    replaces: str = ""

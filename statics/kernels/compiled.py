@@ -1,8 +1,8 @@
 """Machine code of functions that know no scene, compiled once a machine and kept from run to run.
 
-This stands in for numba's own cache, which trusts its files: a damaged one is unpickled or called as it is, of
-two processes that compile at once one may be given the other's code, and a change in what a function calls is
-not seen. Here every signature of a function has a file of its own, named by all that its code depends on,
+This stands in for numba's own cache, which trusts its files: a damaged one is unpickled or called as it is,
+of two processes that compile at once one may be given the other's code, and a change in what a function calls
+is not seen. Here every signature of a function has a file of its own, named by all that its code depends on,
 all sources of its folder among it, and sealed.
 """
 

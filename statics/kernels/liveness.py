@@ -30,20 +30,13 @@ class Body:
         return [value for value, _ in self.passed_on.values()]
 
 
-Owners = dict[sp.Symbol, tuple[str, ...]]
-"""Names of the steps that leave a symbol for later passes: the first that computes it, and its replacements."""
+Owners = dict[sp.Symbol, str]
+"""Name of the first step that computes each symbol: its value there is what later passes read."""
 
 
 def owners_of(steps: Sequence[Step]) -> Owners:
     """The steps whose value of a symbol later passes read."""
-    owners: Owners = {}
-    for step in steps:
-        for symbols, _ in step.trace.lines:
-            for computed in symbols:
-                known = owners.get(computed, ())
-                if not known or step.replaces in known:
-                    owners[computed] = (*known, step.name)
-    return owners
+    return {s: step.name for step in reversed(steps) for symbols, _ in step.trace.lines for s in symbols}
 
 
 def live_bodies(steps: Sequence[Step], owners: Owners) -> list[Body]:
@@ -51,7 +44,7 @@ def live_bodies(steps: Sequence[Step], owners: Owners) -> list[Body]:
     bodies: list[Body] = []
     wanted: set[sp.Symbol] = set()
     for step in reversed(steps):
-        body = _prune(step, {s for s in wanted if step.name in owners.get(s, ())})
+        body = _prune(step, {s for s in wanted if owners.get(s) == step.name})
         wanted |= body.needs | symbols_of(body.start)
         bodies.insert(0, body)
     return bodies

@@ -1,7 +1,7 @@
 """Kernels: a scene's passes, derived once for its structure, kept as text, and compiled in this process.
 
-A kernel is found by a hash of the structure, of the sources that derive and print it, and of the versions that
-shape its text. A warm start finds its text and imports no sympy.
+A kernel is found by a hash of the structure, of the sources that derive and print it, and of the versions
+that shape its text. A warm start finds its text and imports no sympy.
 """
 
 import ast
@@ -37,8 +37,8 @@ class Family:
     """A set of passes that are derived together.
 
     ``derive`` names the function of a structure that returns its forces and steps, "module:function"; it is
-    imported when a text has to be made. ``passes`` is a named tuple of integers: addresses of the passes, zero
-    where the scene has none, and sizes of the arrays.
+    imported when a text has to be made. ``passes`` is a named tuple of integers: addresses of the passes,
+    zero where the scene has none, and sizes of the arrays.
     """
 
     name: str

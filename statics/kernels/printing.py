@@ -1,7 +1,7 @@
 """From sympy steps to the text of one readable module of steps.
 
-Every symbol that a step uses is a number that it is given or that is carried along the chain, an element of an
-array (coordinates, inputs, parameters), or was computed by an earlier pass; then it becomes a column of
+Every symbol that a step uses is a number that it is given or that is carried along the chain, an element of
+an array (coordinates, inputs, parameters), or was computed by an earlier pass; then it becomes a column of
 ``chain``. What nothing reads is not generated.
 """
 
@@ -136,7 +136,7 @@ def _step(body: Body, columns: _Columns, called: dict[str, str]) -> str:
     """Source of a step; the functions that it calls go into ``called``, by name."""
     step = body.step
     loads = sorted(body.needs, key=lambda s: _by_place(columns.text[s]))
-    stored = [s for s in columns.chain if step.name in columns.owners[s] and _computes(body, s)]
+    stored = [s for s in columns.chain if columns.owners[s] == step.name]
     outputs = [value for values in step.stores.values() for value in values]
     targets = [f"{array}[i, {k}]" for array, values in step.stores.items() for k in range(len(values))]
     lines = [
@@ -154,10 +154,6 @@ def _step(body: Body, columns: _Columns, called: dict[str, str]) -> str:
     lines.append(f"return {_tuple(_code(value) for _, value in body.passed_on.values())}")
     signature = f"def {step.name}_step(i, carried, given, {', '.join(step.arrays)}):"
     return "\n    ".join([signature, f'"""{step.doc}"""', *lines])
-
-
-def _computes(body: Body, s: sp.Symbol) -> bool:
-    return any(s in symbols for symbols, _ in body.lines)
 
 
 def _by_place(text: str) -> tuple[str, int]:

@@ -1,8 +1,8 @@
 """Newton's method on the chain that ends in a stable equilibrium.
 
 The potential energy must fall (Armijo); pivot blocks are made positive as they come, so that every step
-descends. At a saddle the search stops, so that it can be reported, and goes on along the direction of negative
-curvature that the elimination knows. A trial beyond a geometric limit counts as infinitely high.
+descends. At a saddle the search stops, so that it can be reported, and goes on along the direction of
+negative curvature that the elimination knows. A trial beyond a geometric limit counts as infinitely high.
 """
 
 import math
@@ -159,8 +159,8 @@ def shorten(
     """Halve the step until the potential falls enough (Armijo) and no geometric limit comes too close.
 
     ``enough`` is the potential to fall from, with its slope and curvature along ``change``; of the
-    ``clearance`` at q a part must be left. Returns the factor, 0 if there is none; ``trial`` is the accepted q,
-    ``scalars`` hold its potential and clearance.
+    ``clearance`` at q a part must be left. Returns the factor, 0 if there is none; ``trial`` is the accepted
+    q, ``scalars`` hold its potential and clearance.
     """
     for _ in range(60):
         advance(q, factor, change, trial)

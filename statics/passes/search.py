@@ -1,4 +1,4 @@
-"""Common parts of both searches for an equilibrium: outcomes, limits, steps in coordinates of unlike units."""
+"""Common parts of both searches for an equilibrium: outcomes, limits, steps in unlike units."""
 
 import numpy as np
 
