@@ -21,6 +21,8 @@ from statics import (
     Scene,
     StaticSolver,
 )
+from statics.passes.newton import find_stable
+from statics.passes.rest_passes import RestPasses
 
 DISKS = (4, 16, 64, 256, 1024)
 REPEATS = 9
@@ -58,23 +60,23 @@ def chained_multiply_adds(count: int, factor: float) -> float:
 def seconds_per_solution(disks: int) -> tuple[float, int]:
     """Median time of a solution from straight at 2 N, and its Newton iterations."""
     solver = StaticSolver(scene(disks))
-    find, segments, loads = solver.kernel.find_equilibrium, solver.segments, solver.disks
+    passes, segments, loads = solver.kernel.passes, solver.segments, solver.disks
     q, tension, unit = np.zeros((disks, 2)), np.array([2.0]), solver.scene.arm.rest_length
 
     @njit
-    def many(q: np.ndarray, count: int) -> int:
+    def many(passes: RestPasses, q: np.ndarray, count: int) -> int:
         iterations = 0
         for _ in range(count):
             q[:] = 0.0
-            iterations = find(q, tension, segments, loads, unit, 200)[1]
+            iterations = find_stable(passes, q, tension, segments, loads, unit, 200)[1]
         return iterations
 
     count = max(1, WORK // disks)
-    iterations = many(q, 1)
+    iterations = many(passes, q, 1)
     times = []
     for _ in range(REPEATS):
         started = time.perf_counter()
-        many(q, count)
+        many(passes, q, count)
         times.append((time.perf_counter() - started) / count)
     return statistics.median(times), iterations
 

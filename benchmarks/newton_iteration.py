@@ -1,14 +1,12 @@
 """What one Newton iteration of an implicit stage costs: residual, matrix, solve.
 
 Per segment, at 64 segments of the paper's arm, beside a fixed loop of as many multiply-adds: eight sums that
-wait for nothing but themselves. Reported sweep by sweep; asserted: the whole, as a ratio to that loop.
+wait for nothing but themselves. Reported pass by pass; asserted: the whole, as a ratio to that loop.
 """
 
 import ast
 import time
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numba import njit
@@ -17,15 +15,12 @@ from scaling import SCENARIO, cut
 from continuum_dyn import load_scenario
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation import Motion
+from statics.kernels.calling import run
+from statics.kernels.loading import Kernel
+from statics.kernels.slots import DAMPING_WEIGHT, SCALARS, STIFFNESS_WEIGHT
 
 SEGMENTS = 64
 CALLS, REPEATS = 4000, 15
-SWEEPS = {
-    "motion": ("motion_step",),
-    "residual": ("residual_step",),
-    "eliminate": ("eliminate_step",),
-    "substitute": ("substitute_step",),
-}
 AT_MOST = 2.5
 """Times the loop of multiply-adds: what a wait for angles, pivots and memory may cost."""
 
@@ -51,54 +46,62 @@ def nanoseconds(work: Callable[[], None]) -> float:
     return 1e9 * min(times)
 
 
-def operations(kernel: Any) -> dict[str, int]:
-    """Arithmetic operations of every function of a generated kernel."""
-    tree = ast.parse(Path(kernel.__file__).read_text(encoding="utf-8"))
+def operations(kernel: Kernel) -> dict[str, int]:
+    """Arithmetic operations of every step of a kernel."""
     return {
-        node.name: sum(isinstance(part, ast.BinOp) for part in ast.walk(node))
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef)
+        node.name.removesuffix("_step"): sum(isinstance(part, ast.BinOp) for part in ast.walk(node))
+        for node in kernel.tree.body
+        if isinstance(node, ast.FunctionDef) and node.name.endswith(("_step", "_1", "_2"))
     }
 
 
-def sweeps_of(motion: Motion) -> dict[str, Callable[[], None]]:
-    """The sweeps of one iteration, each called many times from compiled code."""
-    kernel, segments, disks = motion.dynamics.implicit
+@njit
+def motions(address, n, scalars, q, u, w, inputs, segments, disks, chain):
+    """Repeat the outward pass."""
+    for _ in range(CALLS):
+        run(address, n, scalars, q, u, w, inputs, segments, disks, chain)
+
+
+@njit
+def residuals(address, n, scalars, disks, chain, residual):
+    """Repeat the residual pass."""
+    for _ in range(CALLS):
+        run(address, n, scalars, disks, chain, residual)
+
+
+@njit
+def eliminations(address, n, scalars, segments, disks, chain, residual, descent):
+    """Repeat the elimination."""
+    for _ in range(CALLS):
+        run(address, n, scalars, segments, disks, chain, residual, descent, descent)
+
+
+@njit
+def substitutions(address, n, scalars, chain, descent, change):
+    """Repeat the substitution."""
+    for _ in range(CALLS):
+        run(address, n, scalars, chain, descent, change)
+
+
+def passes_of(motion: Motion) -> dict[str, Callable[[], None]]:
+    """The passes of one iteration, each called many times from compiled code."""
+    kernel, segments, disks = motion.dynamics.motion
     shape = (SEGMENTS, motion.dynamics.dofs)
     q = motion.start[: motion.dynamics.size].reshape(shape).copy()
     q[:, 0] += 1.0 / SEGMENTS
     u, w = np.full(shape, 0.1), np.zeros(shape)
-    chain, tension = np.empty((SEGMENTS, kernel.CHAIN_COLUMNS)), np.array([1.0])
+    chain, tension = np.empty((SEGMENTS, kernel.widths["chain"])), np.array([1.0])
     residual, descent, change = np.empty(shape), np.empty(shape), np.empty(shape)
-    start = (1e-3, 1e-6, *kernel.ELIMINATE_START[2:])
-    outward, inward = kernel.motion_sweep, kernel.residual_sweep
-    eliminate, substitute = kernel.eliminate_sweep, kernel.substitute_sweep
-
-    @njit
-    def motions(q, u, w, tension, segments, disks, chain):
-        for _ in range(CALLS):
-            outward(q, u, w, tension, segments, disks, chain)
-
-    @njit
-    def residuals(disks, chain, residual):
-        for _ in range(CALLS):
-            inward(disks, chain, residual)
-
-    @njit
-    def eliminations(start, segments, disks, chain, residual, descent):
-        for _ in range(CALLS):
-            eliminate(start, segments, disks, chain, residual, descent, descent)
-
-    @njit
-    def substitutions(chain, descent, change):
-        for _ in range(CALLS):
-            substitute(chain, descent, change)
-
+    scalars, passes = np.zeros(SCALARS), kernel.passes
+    scalars[DAMPING_WEIGHT], scalars[STIFFNESS_WEIGHT] = 1e-3, 1e-6
+    common = (SEGMENTS, scalars)
     return {
-        "motion": lambda: motions(q, u, w, tension, segments, disks, chain),
-        "residual": lambda: residuals(disks, chain, residual),
-        "eliminate": lambda: eliminations(start, segments, disks, chain, residual, descent),
-        "substitute": lambda: substitutions(chain, descent, change),
+        "motion": lambda: motions(passes.motion, *common, q, u, w, tension, segments, disks, chain),
+        "residual": lambda: residuals(passes.residual, *common, disks, chain, residual),
+        "eliminate": lambda: eliminations(
+            passes.eliminate, *common, segments, disks, chain, residual, descent
+        ),
+        "substitute": lambda: substitutions(passes.substitute, *common, chain, descent, change),
     }
 
 
@@ -108,13 +111,13 @@ def main() -> None:
     for extension in (True, False):
         motion = Motion(cut(scenario, SEGMENTS, extension))
         motion.warm_up(Solver("chain"))
-        counted = operations(motion.dynamics.implicit[0])
+        counted = operations(motion.dynamics.motion[0])
         ladder = max(count for name, count in counted.items() if name.startswith("sigma_ladder"))
         print(f"{'with' if extension else 'without'} extension, per segment")
         whole, all_operations = 0.0, 0
-        for name, work in sweeps_of(motion).items():
+        for name, work in passes_of(motion).items():
             spent = nanoseconds(work) / CALLS / SEGMENTS
-            done = sum(counted[step] for step in SWEEPS[name]) + (ladder if name == "motion" else 0)
+            done = counted[name] + (ladder if name == "motion" else 0)
             whole, all_operations = whole + spent, all_operations + done
             print(f"  {name:11s} {spent:5.1f} ns  {done:4d} operations")
         x = np.ones(8)

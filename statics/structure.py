@@ -22,7 +22,7 @@ class Structure:
 
     ``effects`` are the classes of the scene's effects; ``coordinates`` and ``inputs`` the names of a
     segment's coordinates and of the numbers that drive the scene; ``payloads`` the largest number of them on
-    one disk; ``core_fractions`` where along a segment the core's own mass stands, none for a core without mass.
+    one disk; ``core_fractions`` where along a segment the core's own mass stands, none without such mass.
     """
 
     effects: tuple[type[Effect], ...]

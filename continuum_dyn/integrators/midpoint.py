@@ -205,7 +205,9 @@ def sample(
         row = min(int((at[m] - t) / h), rows - 1)
         part = at[m] - (t + row * h)
         end = min(row + 1, rows - 1)
-        v[:] = (qs[end] - qs[end - 1]) / h
+        for i in range(n):
+            for k in range(dofs):
+                v[i, k] = (qs[end, i, k] - qs[end - 1, i, k]) / h
         _, power = solve_step(
             passes, t + row * h, part, qs[row], ps[row], v, allowed, arm, chain, work, pull, scalars
         )

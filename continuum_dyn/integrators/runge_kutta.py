@@ -350,7 +350,9 @@ def start_records(passes: MotionPasses, t: float, y: np.ndarray, arm: Triple, re
     _, n, dofs = accelerations.shape
     inputs, chain, scalars = np.empty(passes.inputs), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     inputs_at(t, pieces, inputs)
-    times[0], states[0] = t, y
+    times[0] = t
+    for m in range(len(y)):
+        states[0, m] = y[m]
     work = np.empty((2, n, dofs))
     q, u = states[0, : n * dofs].reshape((n, dofs)), states[0, n * dofs : 2 * n * dofs].reshape((n, dofs))
     acceleration(passes, q, u, inputs, segments, disks, chain, work, accelerations[0], scalars)
