@@ -22,6 +22,7 @@ from continuum_dyn.effects import (
     QuadraticDrag,
     RotaryInertia,
 )
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span
 from statics import (
     Arm,
@@ -39,7 +40,6 @@ from statics import (
     Payload,
     Scene,
     StaticSolver,
-    codegen,
 )
 from statics.ramp import ramp
 
@@ -221,25 +221,15 @@ def cases(draw: Draw, kind: Callable[[Draw], Scene]) -> Case:
 
 # ---- answers ----
 
-_kernels: dict[str, Any] = {}
-
-
-def interpreted(scene: Scene, recipe: codegen.Recipe) -> Any:
-    """The kernel of a structure as plain Python, made once."""
-    key = codegen.kernel_key(scene, recipe)
-    if key not in _kernels:
-        _kernels[key] = codegen.load_interpreted(scene, recipe)
-    return _kernels[key]
-
 
 def at_rest(case: Case) -> Equilibrium:
     """The equilibrium under the case's inputs, from straight."""
-    return StaticSolver(case.scene, interpreted).solve(case.drives)
+    return StaticSolver(case.scene).solve(case.drives)
 
 
 def let_out(case: Case) -> Equilibrium:
     """The same, come to from a fiftieth more tension: where cables rub the arm remembers it."""
-    solver = StaticSolver(case.scene, interpreted)
+    solver = StaticSolver(case.scene)
     if not any(kind.rubs for kind in case.scene.cable_kinds):
         return at_rest(case)
     more = [1.02 if name.startswith("tension") else 1.0 for name in case.scene.inputs]
@@ -248,7 +238,7 @@ def let_out(case: Case) -> Equilibrium:
 
 def dynamics_of(case: Case) -> tuple[Dynamics, np.ndarray, Span]:
     """The equations of motion, the state and inputs that stay as they are."""
-    dynamics = Dynamics(case.scene, interpreted)
+    dynamics = Dynamics(case.scene)
     pieces = np.zeros((len(case.scene.inputs), 6))
     pieces[:, 1] = case.drives
     return dynamics, dynamics.state(case.q, case.u), Span(0.0, 1.0, pieces)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import whole_arm
+from passes_by_hand import Passes
 from whole_arm import (
     bare_scene,
     difference_matrix,
@@ -19,13 +20,13 @@ from whole_arm import (
     tapered_scene,
 )
 
-from continuum_dyn.equations.families import RECIPE as MOTION
 from continuum_dyn.passes.dynamics import Dynamics
+from continuum_dyn.passes.motion_passes import MOTION
 from continuum_dyn.scenario.intervals import Span
-from statics import codegen, equilibria
 from statics.arm import Cable
-from statics.derivation.at_rest import RECIPE as STATICS
 from statics.equilibria import StaticSolver
+from statics.kernels.loading import load, load_interpreted
+from statics.passes.rest_passes import REST
 from statics.scene import Scene
 
 SEEDS = range(10)
@@ -202,34 +203,28 @@ def test_exact_jacobian_equals_differences_of_the_rate(scene_of: Callable[[int],
 
 def test_compiled_motion_equals_interpreted_motion() -> None:
     scene = full_scene(3)
-    dynamics, interpreted = Dynamics(scene), codegen.load_interpreted(scene, MOTION)
-    y = dynamics.state(*random_state(scene, seed=8))
-    arguments = (TIME, y, pulling(scene).pieces, dynamics.segments, dynamics.disks, dynamics.dofs)
-    np.testing.assert_allclose(dynamics.kernel.rate(*arguments), interpreted.rate(*arguments), rtol=1e-11)
-    jacobians = dynamics.kernel.rate_jacobian(*arguments), interpreted.rate_jacobian(*arguments)
+    dynamics, interpreted = Dynamics(scene), Dynamics(scene, load_interpreted)
+    arguments = TIME, dynamics.state(*random_state(scene, seed=8)), pulling(scene)
+    np.testing.assert_allclose(dynamics.rate(*arguments), interpreted.rate(*arguments), rtol=1e-11)
+    jacobians = dynamics.jacobian(*arguments), interpreted.jacobian(*arguments)
     assert block_error(*jacobians, kinds_of(dynamics)) < ROUNDING
 
 
 def test_compiled_equilibrium_equals_interpreted_equilibrium() -> None:
-    solver = StaticSolver(full_scene(4))
-    interpreted = codegen.load_interpreted(solver.scene, STATICS)
-    numbers = tension_at(solver.scene), solver.segments, solver.disks, 0.02, equilibria.MAX_ITERATIONS
-    compiled_q, interpreted_q = np.zeros((4, 2)), np.zeros((4, 2))
-    outcome = solver.kernel.find_equilibrium(compiled_q, *numbers)
-    assert outcome == interpreted.find_equilibrium(interpreted_q, *numbers)
-    assert relative_error(compiled_q, interpreted_q) < 1e-13
+    scene = full_scene(4)
+    compiled, interpreted = (
+        StaticSolver(scene, loader).solve(tension_at(scene)) for loader in (load, load_interpreted)
+    )
+    assert compiled.outcome == interpreted.outcome
+    assert compiled.iterations == interpreted.iterations
+    assert relative_error(compiled.coordinates, interpreted.coordinates) < 1e-13
 
 
 @pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, spanned_scene])
 def test_virtual_power_at_rest_equals_virtual_work(scene_of: Callable[[int], Scene]) -> None:
     scene = scene_of(5)
-    motion, statics, tension = Dynamics(scene), StaticSolver(scene), tension_at(scene)
+    motion, rest, tension = Passes(scene, MOTION), Passes(scene.at_rest, REST), tension_at(scene)
     q, _ = random_state(scene, seed=9)
-    still, by_power, by_work = np.zeros_like(q), np.empty_like(q), np.empty_like(q)
-    chain = np.empty((len(q), motion.kernel.CHAIN_COLUMNS))
-    motion.kernel.motion_sweep(q, still, still, tension, motion.segments, motion.disks, chain)
-    motion.kernel.residual_sweep(motion.disks, chain, by_power)
-    chain = np.empty((len(q), statics.kernel.CHAIN_COLUMNS))
-    statics.kernel.pose_sweep(q, tension, statics.segments, statics.disks, chain)
-    statics.kernel.residual_sweep(statics.disks, chain, by_work)
-    assert relative_error(by_power, by_work) < 1e-14
+    motion.motion(q, np.zeros_like(q), np.zeros_like(q), tension)
+    rest.pose(q, tension)
+    assert relative_error(motion.residual(), rest.residual()) < 1e-14

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 import whole_arm
+from passes_by_hand import Passes
 from whole_arm import (
     WholeArm,
     difference_matrix,
@@ -24,7 +25,8 @@ from statics.arm import Cable
 from statics.derivation.segment import SegmentSymbols, symbol
 from statics.derivation.sigma import Sigma
 from statics.effects.cables import disk_loads
-from statics.equilibria import StaticSolver, equilibrium
+from statics.equilibria import equilibrium
+from statics.passes.rest_passes import REST
 from statics.scene import Scene
 
 SEEDS = range(10)
@@ -55,17 +57,13 @@ class Statics:
 
 
 def chain_statics(scene: Scene, q: np.ndarray, tension: np.ndarray) -> Statics:
-    solver = StaticSolver(scene)
-    kernel, segments, disks = solver.kernel, solver.segments, solver.disks
-    chain, pivots = np.empty((len(q), kernel.CHAIN_COLUMNS)), np.empty((len(q), kernel.PIVOT_COLUMNS))
-    residual, descent, step = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-    potential, scale, _ = kernel.pose_sweep(q, tension, segments, disks, chain)
-    kernel.residual_sweep(disks, chain, residual)
-    start = kernel.ELIMINATE_START
-    flipped = kernel.eliminate_sweep(start, segments, disks, chain, residual, descent, pivots)[0]
-    kernel.substitute_sweep(chain, descent, step)
-    *_, negative = kernel.examine(q, tension, segments, disks, np.empty((len(q), 3)))
-    return Statics(potential, scale, residual, step, int(flipped), negative)
+    passes = Passes(scene.at_rest, REST)
+    seen = passes.pose(q, tension)
+    residual = passes.residual()
+    step, flipped = passes.solve(residual)
+    _, kept = passes.solve(residual, keep_sign=1.0)
+    counts = (int(counted["negative_pivots"]) for counted in (flipped, kept))
+    return Statics(seen["potential"], seen["potential_scale"], residual, step, *counts)
 
 
 def energy_gradient(arm: WholeArm, q: np.ndarray, tension: np.ndarray) -> np.ndarray:

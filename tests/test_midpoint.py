@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import whole_arm
 from conftest import SCENARIOS, motion, moving, rone2012
-from continuum_dyn.midpoint_kernel import RECIPE
 from scipy.integrate import solve_ivp
 from whole_arm import (
     bare_scene,
@@ -26,6 +25,7 @@ from whole_arm import (
 from continuum_dyn import Scenario, Trajectory, load_scenario, modes, simulate
 from continuum_dyn.effects import MaterialDamping
 from continuum_dyn.integrators import MidpointSolver
+from continuum_dyn.integrators.midpoint import advance, momentum_passes
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import write_log
@@ -33,7 +33,8 @@ from continuum_dyn.scenario.intervals import Span, spans
 from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import MotionStudy
-from statics import InputError, Outcome, Scene, codegen, equilibrium
+from statics import InputError, Outcome, Scene, equilibrium
+from statics.kernels.slots import SCALARS
 
 FIRST_PERIOD = 1 / 23.24
 """Of the paper's arm at rest under 2 N, released, s."""
@@ -72,8 +73,7 @@ def test_momenta_and_slopes_are_those_of_the_whole_arm(scene_of: Callable[[int],
     """Momenta M u by sympy's KanesMethod, dT/dq and dV/dq by complex steps of the energies."""
     scene = undamped(scene_of(3))
     arm, tension = whole_arm.whole_arm(scene), np.array([1.3, 0.7])[: scene.cables]
-    kernel: Any = codegen.load_interpreted(scene, RECIPE)
-    tables = [scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)]
+    kernel, *tables = Dynamics(scene).midpoint
     for seed in range(5):
         q, u = random_state(scene, seed)
         rates = u.T.ravel()
@@ -82,8 +82,9 @@ def test_momenta_and_slopes_are_those_of_the_whole_arm(scene_of: Callable[[int],
             return rates @ whole_arm.mass_and_forcing(arm, q, u, tension)[0] @ rates / 2
 
         by_q, p, slope = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-        chain = np.empty((len(q), kernel.CHAIN_COLUMNS))
-        kernel.momentum_sweeps(q, u, tension, (None, *tables), chain, by_q, p, slope)
+        chain, arm_tables = np.empty((len(q), kernel.widths["chain"])), (np.empty((0, 6)), *tables)
+        scalars = np.empty(SCALARS)
+        momentum_passes(kernel.passes, q, u, tension, arm_tables, chain, by_q, p, slope, scalars)
         mass = whole_arm.mass_and_forcing(arm, q, u, tension)[0]
         assert relative_error(p, (mass @ rates).reshape(-1, arm.n).T) < 1e-13
         assert relative_error(slope, gradient(kinetic, q)) < 1e-12
@@ -104,7 +105,7 @@ def one_step(scene: Scene, h: float) -> Callable[[np.ndarray], np.ndarray]:
         q, p = np.empty(shape), np.empty(shape)
         q[0], p[0] = z.reshape(shape)
         past = np.zeros((3, *shape[1:]))
-        taken, _ = kernel.advance(0.0, h, (q, p, np.zeros(2)), past, 1e-17, arm)
+        taken, _ = advance(kernel.passes, 0.0, h, (q, p, np.zeros(2)), past, 1e-17, arm)
         assert taken == 1
         return np.concatenate([q[1].ravel(), p[1].ravel()])
 

@@ -1,17 +1,19 @@
 """Newton's matrices in random scenes: what is eliminated are the differences of the residual."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
-from random_scenes import Case, dynamics_of, following, holds_in, inextensible, interpreted, loaded, meshed
+from passes_by_hand import Passes
+from random_scenes import Case, dynamics_of, following, holds_in, inextensible, loaded, meshed
 from whole_arm import difference_matrix
 
-from continuum_dyn import implicit_kernel
 from continuum_dyn.effects import QuadraticDrag
-from statics import Scene, codegen, statics_kernel
+from continuum_dyn.passes.motion_passes import MOTION
+from statics import Scene
+from statics.kernels.loading import Family
+from statics.passes.rest_passes import REST
 
 KINDS = (loaded, following, meshed, inextensible)
 """Not with friction: its matrix leaves out what changes of turning angles do to tensions."""
@@ -22,43 +24,31 @@ SLACK = 3e-4
 CLOSE = 1e-8
 
 
-class Sweeps:
+class Unitless:
     """A kernel's residual and its elimination, for a case, in coordinates that are alike in stiffness.
 
     Elongations count in radii of gyration of the core, so that extending by 1 is as hard as bending by 1 rad.
     """
 
-    def __init__(self, case: Case, recipe: codegen.Recipe) -> None:
-        scene = case.scene.at_rest if recipe is statics_kernel.RECIPE else case.scene
-        self.kernel = interpreted(scene, recipe)
-        self.segments = scene.table("segment", self.kernel.SEGMENT_COLUMNS)
-        self.disks = scene.table("disk", self.kernel.DISK_COLUMNS)
+    def __init__(self, case: Case, family: Family) -> None:
+        scene = case.scene.at_rest if family is REST else case.scene
+        self.passes = Passes(scene, family)
         self.inputs = case.scene.held(case.drives)
-        self.shape = case.q.shape
-        self.chain = np.empty((self.shape[0], self.kernel.CHAIN_COLUMNS))
         gyration = np.sqrt(scene.arm.per_disk("second_moment") / scene.arm.per_disk("area"))[0]
-        self.unit = np.tile([1.0, gyration][: self.shape[1]], self.shape[0])
+        segments, dofs = self.passes.shape
+        self.unit = np.tile([1.0, gyration][:dofs], segments)
 
     def residual(self, *state: np.ndarray) -> np.ndarray:
         """At rest in q, or at (q, u, w), all without units; N m."""
-        sweep = self.kernel.pose_sweep if len(state) == 1 else self.kernel.motion_sweep
-        of_state = ((part * self.unit).reshape(self.shape) for part in state)
-        sweep(*of_state, self.inputs, self.segments, self.disks, self.chain)
-        residual = np.empty(self.shape)
-        self.kernel.residual_sweep(self.disks, self.chain, residual)
-        return residual.ravel() * self.unit
+        outward = self.passes.pose if len(state) == 1 else self.passes.motion
+        outward(*((part * self.unit).reshape(self.passes.shape) for part in state), self.inputs)
+        return self.passes.residual().ravel() * self.unit
 
-    def inverse(self, *start: float) -> np.ndarray:
-        """That of what is eliminated, where the residual was last measured; ``start`` are its weights."""
+    def inverse(self, **given: float) -> np.ndarray:
+        """Inverse of the matrix that is eliminated, where the residual was last measured."""
         columns = []
         for torque in np.eye(self.unit.size):
-            residual = (-torque / self.unit).reshape(self.shape)
-            descent, change, pivots = np.empty(self.shape), np.empty(self.shape), np.empty((len(residual), 3))
-            weights: Any = (*start, *self.kernel.ELIMINATE_START[len(start) :])
-            self.kernel.eliminate_sweep(
-                weights, self.segments, self.disks, self.chain, residual, descent, pivots
-            )
-            self.kernel.substitute_sweep(self.chain, descent, change)
+            change, _ = self.passes.solve((-torque / self.unit).reshape(self.passes.shape), **given)
             columns.append(change.ravel() / self.unit)
         return np.column_stack(columns)
 
@@ -82,14 +72,14 @@ def stays_taut_or_slack(case: Case) -> bool:
     return bool(((more["tension"] > 0) == (less["tension"] > 0))[:, driven].all())
 
 
-def differences_at(sweeps: Sweeps, *state: np.ndarray) -> list[np.ndarray]:
+def differences_at(unitless: Unitless, *state: np.ndarray) -> list[np.ndarray]:
     """Matrices of the residual's derivatives by each part of the state, at that state."""
     matrices = []
     for part, (values, step) in enumerate(zip(state, STEPS[: len(state)], strict=True)):
         others = list(state)
 
         def along(changed: np.ndarray, part: int = part, others: list[np.ndarray] = others) -> np.ndarray:
-            return sweeps.residual(*others[:part], changed, *others[part + 1 :])
+            return unitless.residual(*others[:part], changed, *others[part + 1 :])
 
         matrices.append(difference_matrix(along, values, np.full(values.size, step)))
     return matrices
@@ -99,12 +89,11 @@ def differences_at(sweeps: Sweeps, *state: np.ndarray) -> list[np.ndarray]:
 def test_matrix_at_rest_is_the_residuals_differences(case: Case) -> None:
     """Symmetric, and with loads that follow their disk unsymmetric."""
     assume(stays_taut_or_slack(case))
-    sweeps = Sweeps(case, statics_kernel.RECIPE)
-    q = case.q.ravel() / sweeps.unit
-    (stiffness,) = differences_at(sweeps, q)
-    sweeps.residual(q)
-    as_it_is = (0.0,) if case.scene.without_potential else (0.0, 0.0, 1.0)
-    assert_inverse(sweeps.inverse(*as_it_is), stiffness)
+    unitless = Unitless(case, REST)
+    q = case.q.ravel() / unitless.unit
+    (stiffness,) = differences_at(unitless, q)
+    unitless.residual(q)
+    assert_inverse(unitless.inverse(keep_sign=1.0), stiffness)
 
 
 @holds_in(*KINDS, exponent=st.floats(-5.0, -2.0))
@@ -113,9 +102,11 @@ def test_matrix_of_an_implicit_stage_is_the_residuals_differences(case: Case, ex
     assume(stays_taut_or_slack(case))
     effects = case.scene.effects
     calm = [QuadraticDrag(0.0) if isinstance(effect, QuadraticDrag) else effect for effect in effects]
-    sweeps = Sweeps(replace(case, scene=Scene(case.scene.arm, calm)), implicit_kernel.RECIPE)
-    q, g = case.q.ravel() / sweeps.unit, 10**exponent
+    unitless = Unitless(replace(case, scene=Scene(case.scene.arm, calm)), MOTION)
+    q, g = case.q.ravel() / unitless.unit, 10**exponent
     still = np.zeros_like(q)
-    stiffness, damping, mass = differences_at(sweeps, q, still, still)
-    sweeps.residual(q, still, still)
-    assert_inverse(sweeps.inverse(g, g**2), mass + g * damping + g**2 * stiffness)
+    stiffness, damping, mass = differences_at(unitless, q, still, still)
+    unitless.residual(q, still, still)
+    assert_inverse(
+        unitless.inverse(damping_weight=g, stiffness_weight=g**2), mass + g * damping + g**2 * stiffness
+    )

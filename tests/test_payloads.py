@@ -8,17 +8,25 @@ import numpy as np
 import pytest
 import whole_arm
 from conftest import MOTION, motion, moving, rone2012
+from passes_by_hand import Passes
 from scipy.optimize import brentq
 from whole_arm import difference_matrix, full_scene, gradient, random_state, relative_error, spanned_scene
 
-from continuum_dyn import Scenario, midpoint_kernel, motion_kernel, simulate
+from continuum_dyn import Scenario, simulate
 from continuum_dyn.effects import MassDamping
+from continuum_dyn.integrators.midpoint import momentum_passes
+from continuum_dyn.passes.dynamics import LEDGER, Dynamics
+from continuum_dyn.passes.motion_passes import MOTION as MOVING
+from continuum_dyn.passes.observation import observe
+from continuum_dyn.scenario.intervals import Span
 from continuum_dyn.scenario.profiles import Step
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy, StepResponseStudy
-from statics import Arm, Bending, Gravity, InputError, Outcome, Payload, Scene, codegen, equilibrium
-from statics import statics_kernel as at_rest
+from statics import Arm, Bending, Gravity, InputError, Outcome, Payload, Scene, equilibrium
 from statics.judges.exact_rod import exact_rod
+from statics.kernels.loading import kernel_key
+from statics.kernels.slots import SCALARS
+from statics.passes.rest_passes import REST
 
 PIECES = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0], [0.0, 0.7, 0.0, 0.0, 0.0, 0.0]])
 TENSION = PIECES[:, 1]
@@ -40,26 +48,23 @@ def laden_span() -> Scene:
 
 
 class Kernel:
-    """A scene's kernel as plain Python: nothing is compiled."""
+    """A scene's equations of motion under constant tensions."""
 
-    def __init__(self, scene: Scene, recipe: codegen.Recipe) -> None:
-        self.run: Any = codegen.load_interpreted(scene, recipe)
-        columns = (("segment", self.run.SEGMENT_COLUMNS), ("disk", self.run.DISK_COLUMNS))
-        self.tables = [scene.table(place, names) for place, names in columns]
-        self.pieces, self.dofs = PIECES[: scene.cables], len(scene.coordinates)
+    def __init__(self, scene: Scene) -> None:
+        self.dynamics, self.span = Dynamics(scene), Span(0.0, 1.0, PIECES[: scene.cables])
 
     def rate(self, y: np.ndarray) -> np.ndarray:
         """dy/dt."""
-        return self.run.rate(0.0, y, self.pieces, *self.tables, self.dofs)
+        return self.dynamics.rate(0.0, y, self.span)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """d(rate)/dy."""
-        return self.run.rate_jacobian(0.0, y, self.pieces, *self.tables, self.dofs)
+        return self.dynamics.jacobian(0.0, y, self.span)
 
 
 @cache
 def moving_kernel(scene: Scene) -> Kernel:
-    return Kernel(scene, motion_kernel.RECIPE)
+    return Kernel(scene)
 
 
 def state(q: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -78,7 +83,8 @@ def test_accelerations_and_energies_are_those_of_kanes_method_with_bodies_of_the
         assert relative_error(found, whole_arm.accelerations(arm, q, u, tension)) < 2e-11
         ledger = np.empty((1, len(LEDGER)))
         poses = np.empty((2, 1, len(q), 3))
-        kernel.run.observe(q[None], u[None], tension[None], *kernel.tables, *poses, ledger)
+        motion, *tables = kernel.dynamics.motion
+        observe(motion.passes, q[None], u[None], tension[None], *tables, *poses, ledger)
         mass, _ = whole_arm.mass_and_forcing(arm, q, u, tension)
         assert ledger[0, 0] == pytest.approx(u.T.ravel() @ mass @ u.T.ravel() / 2, rel=1e-13)
         assert ledger[0, 2] == pytest.approx(whole_arm.gravity_energy(arm, q), rel=1e-12)
@@ -114,25 +120,20 @@ def test_exact_jacobian_equals_differences_of_the_rate() -> None:
 
 def test_residual_at_rest_is_the_gradient_of_the_energy_and_the_stiffness_its_hessian() -> None:
     scene = laden_scene(2)
-    arm, kernel = whole_arm.whole_arm(scene), Kernel(scene.at_rest, at_rest.RECIPE)
-    run, unit = kernel.run, np.array([1.0, arm.L0[0]])
+    arm, passes = whole_arm.whole_arm(scene), Passes(scene.at_rest, REST)
+    unit = np.array([1.0, arm.L0[0]])
 
-    def residual(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        q = values.reshape(2, 2)
-        chain, found = np.empty((len(q), run.CHAIN_COLUMNS)), np.empty_like(q)
-        run.pose_sweep(q, TENSION, *kernel.tables, chain)
-        run.residual_sweep(kernel.tables[1], chain, found)
-        return chain, found
+    def residual(values: np.ndarray) -> np.ndarray:
+        passes.pose(values.reshape(2, 2), TENSION)
+        return passes.residual()
 
     for seed in range(5):
         q, _ = random_state(scene, seed)
-        chain, found = residual(q)
+        found = residual(q)
         expected = gradient(lambda q: whole_arm.potential_energy(arm, q, TENSION), q)
         assert relative_error(found, expected) < 1e-12
-        descent, step, pivots = np.empty_like(q), np.empty_like(q), np.empty((len(q), run.PIVOT_COLUMNS))
-        run.eliminate_sweep(run.ELIMINATE_START, *kernel.tables, chain, found, descent, pivots)
-        run.substitute_sweep(chain, descent, step)
-        hessian = difference_matrix(lambda values: residual(values)[1].ravel(), q.ravel(), [1e-2, 1e-5] * 2)
+        step, _ = passes.solve(found)
+        hessian = difference_matrix(lambda values: residual(values).ravel(), q.ravel(), [1e-2, 1e-5] * 2)
         expected = np.linalg.solve(hessian, -found.ravel()).reshape(q.shape)
         assert relative_error(step / unit, expected / unit) < 1e-7
 
@@ -140,7 +141,7 @@ def test_residual_at_rest_is_the_gradient_of_the_energy_and_the_stiffness_its_he
 def test_momenta_and_slopes_are_those_of_the_whole_arm() -> None:
     plain = laden_scene(2)
     scene = Scene(plain.arm, (effect for effect in plain.effects if effect.name != "material_damping"))
-    arm, kernel = whole_arm.whole_arm(scene), Kernel(scene, midpoint_kernel.RECIPE)
+    arm, (kernel, *tables) = whole_arm.whole_arm(scene), Dynamics(scene).midpoint
     for seed in range(3):
         q, u = random_state(scene, seed)
         rates = u.T.ravel()
@@ -149,8 +150,9 @@ def test_momenta_and_slopes_are_those_of_the_whole_arm() -> None:
             return whole_arm.mass_and_forcing(arm, q, u, TENSION)[0]
 
         by_q, p, slope = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-        chain = np.empty((len(q), kernel.run.CHAIN_COLUMNS))
-        kernel.run.momentum_sweeps(q, u, TENSION, (None, *kernel.tables), chain, by_q, p, slope)
+        chain, arm_tables = np.empty((len(q), kernel.widths["chain"])), (np.empty((0, 6)), *tables)
+        scalars = np.empty(SCALARS)
+        momentum_passes(kernel.passes, q, u, TENSION, arm_tables, chain, by_q, p, slope, scalars)
         kinetic = gradient(lambda q, mass=mass, rates=rates: rates @ mass(q) @ rates / 2, q)
         potential = gradient(lambda q: whole_arm.potential_energy(arm, q, TENSION), q)
         assert relative_error(p, (mass(q) @ rates).reshape(-1, arm.n).T) < 1e-13
@@ -212,7 +214,7 @@ def test_arm_finds_its_rest_under_a_payload_of_many_disks(weight: float) -> None
 
 def test_arm_without_payloads_has_nothing_of_them_in_its_generated_sources() -> None:
     for scene, there in ((full_scene(2), False), (laden_scene(2), True)):
-        assert ("payload" in MOTION.write(scene.structure)) == there
+        assert ("payload" in MOVING.write(scene.structure)) == there
         assert ("payload" in REST.write(scene.at_rest.structure)) == there
 
 
@@ -220,7 +222,7 @@ def test_without_gravity_a_payload_has_no_weight_in_the_generated_source() -> No
     scene = laden_scene(2)
     floating = Scene(scene.arm, (effect for effect in scene.effects if effect.name != "gravity"))
     assert "payload" not in REST.write(floating.at_rest.structure)
-    assert "gravity_x" not in MOTION.write(floating.structure)
+    assert "gravity_x" not in MOVING.write(floating.structure)
 
 
 def test_numbers_of_payloads_compile_nothing_and_one_more_on_a_disk_does() -> None:
@@ -229,8 +231,8 @@ def test_numbers_of_payloads_compile_nothing_and_one_more_on_a_disk_does() -> No
     )
     two = laden(rone2012(), *one.arm.payloads, *one.arm.payloads)
     spread = laden(rone2012(), *one.arm.payloads, *other.arm.payloads)
-    key = codegen.kernel_key(one, at_rest.RECIPE)
-    assert [codegen.kernel_key(scene, at_rest.RECIPE) == key for scene in (other, spread, two)] == [
+    key = kernel_key(one.structure, REST)
+    assert [kernel_key(scene.structure, REST) == key for scene in (other, spread, two)] == [
         True,
         True,
         False,

@@ -5,7 +5,6 @@ costs its derivation only.
 """
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +20,9 @@ from continuum_dyn.effects import (
     QuadraticDrag,
     RotaryInertia,
 )
-from continuum_dyn.equations.families import RECIPE
+from continuum_dyn.passes.accelerations import acceleration
+from continuum_dyn.passes.dynamics import Dynamics
+from continuum_dyn.passes.observation import add_base_power
 from statics import (
     Arm,
     Base,
@@ -30,8 +31,8 @@ from statics import (
     DiskLoads,
     Payload,
     Scene,
-    codegen,
 )
+from statics.kernels.slots import SCALARS
 
 OPTIONAL = tuple(effect for effect in ONE_OF_EACH if effect.name != "inertia")
 FOLLOWING = DiskLoads((DiskLoad(1, (-0.3, 0.5), -0.01), DiskLoad(2, (0.4, -0.7), 0.02, follower=True)))
@@ -91,25 +92,25 @@ def inputs_of(scene: Scene) -> np.ndarray:
 
 
 class Chain:
-    """A scene's kernel as plain Python, at one state."""
+    """A scene's equations of motion, at one state."""
 
     def __init__(self, scene: Scene, q: np.ndarray, u: np.ndarray) -> None:
-        self.run: Any = codegen.load_interpreted(scene, RECIPE)
-        columns = {"segment": self.run.SEGMENT_COLUMNS, "disk": self.run.DISK_COLUMNS}
-        self.tables = [scene.table(place, names) for place, names in columns.items()]
+        self.kernel, *self.tables = Dynamics(scene).motion
         self.inputs = inputs_of(scene)
         self.q, self.u = q, u
 
     def accelerations(self) -> np.ndarray:
         """Of the coordinates, shape of q."""
-        q, chain, w = self.q, np.empty((len(self.q), self.run.CHAIN_COLUMNS)), np.empty_like(self.q)
-        self.run.acceleration(q, self.u, self.inputs, *self.tables, chain, w)
+        q, chain, w = self.q, np.empty((len(self.q), self.kernel.widths["chain"])), np.empty_like(self.q)
+        work, scalars = np.empty((2, *q.shape)), np.empty(SCALARS)
+        passes, tables = self.kernel.passes, self.tables
+        acceleration(passes, q, self.u, self.inputs, *tables, chain, work, w, scalars)
         return w
 
     def base_power(self) -> float:
         """What the base does on the arm, W."""
         power = np.zeros(1)
-        self.run.add_base_power(self.q[None], self.u[None], self.inputs[None], *self.tables, power)
+        add_base_power(self.kernel.passes, self.q[None], self.u[None], self.inputs[None], *self.tables, power)
         return power[0]
 
 
