@@ -22,7 +22,7 @@ from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
 from continuum_dyn.simulation.resumption import Resumption
 from continuum_dyn.simulation.trajectory import Trajectory, observe_trajectory
-from statics import Outcome, codegen
+from statics import Outcome
 from statics.errors import LogError
 
 STEP = SCENARIOS / "step_response.toml"
