@@ -9,10 +9,12 @@ import pytest
 from conftest import SCENARIOS
 from hypothesis import given
 from hypothesis import strategies as st
+from numba import TypingError
 
 from continuum_dyn import load_scenario
 from statics.arm import Arm
 from statics.kernels import calling
+from statics.kernels.compiled import compiled
 from statics.kernels.loading import Kernel, load, run_interpreted
 from statics.kernels.lowering import LoweringError, PassSignature, lower
 from statics.kernels.machine_code import MachineCode
@@ -138,10 +140,12 @@ class Steps:
 
     @property
     def tree(self) -> ast.Module:
+        """The module, parsed."""
         return ast.parse(self.text)
 
     @cache  # noqa: B019, lives as long as the tests
     def code(self, lanes: int = 1) -> MachineCode:
+        """The pass, compiled."""
         text = lower(self.tree, {"go": self.signature}, {"q": 2, "chain": self.width}, SLOTS, lanes=lanes)
         return MachineCode(text, ["go"])
 
@@ -156,9 +160,11 @@ class Steps:
 
     @cache  # noqa: B019
     def kernel(self) -> Kernel:
+        """The pass, to be interpreted."""
         return Kernel(self.text, REST, lambda _: {"go": 0})
 
     def interpreted(self, q: np.ndarray, given: float) -> tuple[np.ndarray, np.ndarray]:
+        """The same by the interpreter, for a single arm."""
         scalars, chain = np.full(SCALARS, np.nan), np.full((len(q), self.width), np.nan)
         scalars[SLOTS["slowing"]] = given
         arrays = {"q": q, "inputs": np.array([0.7]), "chain": chain}
@@ -208,7 +214,7 @@ def test_powers_are_those_of_the_library_up_to_one_rounding_a_product(numbers: l
 
 @given(numbers=NUMBERS)
 def test_hypot_is_pythons_to_a_unit_in_the_last_place(numbers: list[float]) -> None:
-    """Python has a hypot of its own, of any number of arguments, that rounds otherwise than the C library's."""
+    """Python's is its own, of any number of arguments, and rounds otherwise than the C library's."""
     q, steps = np.reshape(numbers, (N, 2)), stored("math.hypot(x, y)")
     np.testing.assert_array_max_ulp(steps.lowered(q, 0.0)[1], steps.interpreted(q, 0.0)[1], maxulp=1)
 
@@ -286,6 +292,19 @@ def sixteen() -> Scene:
     disks = 16
     arm = Arm.preset("rone2012", disks=disks, disk_spacing=0.08 / disks, cables=scene.arm.cables)
     return Scene(arm, scene.effects)
+
+
+def test_arrays_that_are_not_contiguous_are_refused() -> None:
+    """Passes know no strides."""
+    with pytest.raises(ValueError, match="contiguous"):
+        stored("x").lowered(np.ones((2, N)).T, 0.0)
+
+    @compiled
+    def call(address: int, scalars: np.ndarray) -> None:
+        calling.run(address, 1, scalars)
+
+    with pytest.raises(TypingError, match="contiguous"):
+        call(0, np.empty(2 * SCALARS)[::2])
 
 
 @pytest.mark.parametrize("lanes", [4, 8])

@@ -1,8 +1,9 @@
 """From the text of a module of steps to LLVM's language: one function a pass, its loop included.
 
 The text is a small language: assignments, + - * / **, numbers, reads and writes of ``array[i, column]``,
-``min``, ``max``, ``abs``, some of ``math``, a conditional expression, calls of functions that stand above, and
-in those an ``if`` with two arms, of which the names live on that both assign. Anything else is refused by name.
+``min``, ``max``, ``abs``, some of ``math``, a conditional expression, calls of functions that stand above,
+and in those an ``if`` with two arms, of which the names live on that both assign. Anything else is refused
+by name.
 
 A pass becomes
 
@@ -51,8 +52,9 @@ def lower(
     slots: Mapping[str, int],
     lanes: int = 1,
 ) -> str:
-    """LLVM's text of the passes of a module; ``widths`` are the arrays' columns, ``slots`` the places in ``scalars``.
+    """LLVM's text of the passes of a module.
 
+    ``widths`` are the arrays' columns, ``slots`` the places in ``scalars``.
     Raises ``LoweringError`` for what the language does not have.
     """
     functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
