@@ -83,7 +83,7 @@ def cantilever(disks: int, *loads: DiskLoad, damping: float = 0.0) -> Scene:
 
 
 def at_rest(scene: Scene) -> Equilibrium:
-    """The equilibrium from straight, by kernels in plain Python."""
+    """The equilibrium from straight."""
     return StaticSolver(scene).solve(np.empty(0))
 
 

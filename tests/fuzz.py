@@ -25,7 +25,8 @@ from scenario_mutants import mutant, spoiled
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.integrators import Budget
 from continuum_dyn.record import read_log, write_log
-from statics import InputError, codegen
+from statics import InputError
+from statics.kernels import loading
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 TABLE = SCENARIOS / "slow_ramp.csv"
@@ -82,7 +83,7 @@ def warm_up() -> None:
     def refuse(*_arguments: object) -> Path:
         raise NotCachedError
 
-    codegen._kept_text = refuse
+    loading._kept_text = refuse
 
 
 def fuzz(first: int, count: int, seed: int) -> int:

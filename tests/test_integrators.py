@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.integrators import ChainSolver, choose
+from continuum_dyn.integrators.runge_kutta import start_records, step_once
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Span, spans
@@ -18,6 +19,7 @@ from continuum_dyn.scenario.profiles import Sine, Step
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import Scene, equilibrium
+from statics.kernels.slots import SCALARS
 
 
 @pytest.fixture(scope="module")
@@ -75,21 +77,22 @@ def test_tableau_has_its_order_and_is_stiffly_accurate_and_l_stable() -> None:
 
 def fixed_steps(dynamics: Dynamics, span: Span, y: np.ndarray, count: int, tableau: Tableau) -> np.ndarray:
     """The state at the span's end after ``count`` equal steps."""
-    kernel, segments, disks = dynamics.implicit
+    kernel, segments, disks = dynamics.motion
     arm = (span.pieces, segments, disks)
     shape = (count + 1, dynamics.scene.arm.disks, dynamics.dofs)
     records = (np.empty(shape[0]), np.empty((shape[0], y.size)), np.empty(shape), np.empty((shape[0], 3, 2)))
     method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, 0.0)
     n, dofs = shape[1:]
     stages = tuple(np.empty((len(tableau.c), n, dofs)) for _ in range(3))
-    work, chain = np.empty((6, n, dofs)), np.empty((n, kernel.CHAIN_COLUMNS))
-    kernel.start_records(span.start, y, arm, records)
+    work, chain = np.empty((6, n, dofs)), np.empty((n, kernel.widths["chain"]))
+    scalars = np.empty(SCALARS)
+    start_records(kernel.passes, span.start, y, arm, records)
     times, states, accelerations, _ = records
     h = (span.end - span.start) / count
     for row in range(count):
         stages[2][0] = accelerations[row]
-        arguments = (1e-11, arm, chain, work, stages, states[row + 1])
-        kernel.step_once(times[row], h, states[row], 0.1, method, *arguments)
+        arguments = (1e-11, arm, chain, work, stages, states[row + 1], scalars)
+        step_once(kernel.passes, times[row], h, states[row], 0.1, method, *arguments)
         times[row + 1], accelerations[row + 1] = times[row] + h, stages[2][-1]
     return states[-1, : 2 * dynamics.size]
 

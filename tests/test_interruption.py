@@ -122,8 +122,16 @@ def test_interrupted_motion_is_logged_up_to_there(tmp_path: Path) -> None:
     assert found.log.trajectory["time"][-1] > 0
 
 
-def test_interrupted_while_compiling_leaves_a_log_that_says_so(tmp_path: Path) -> None:
-    place = "statics.kernels.loading:_module"
+@pytest.mark.parametrize(
+    "place",
+    [
+        "statics.kernels.loading:Family.write",
+        "statics.kernels.loading:_compiled",
+        "statics.kernels.compiled:_KeptCode.save_overload",
+    ],
+)
+def test_interrupted_while_compiling_leaves_a_log_that_says_so(tmp_path: Path, place: str) -> None:
+    """While passes are derived, while they are lowered, or while a function is compiled."""
     found = interrupted(long_motion(tmp_path), tmp_path / "out", "--no-cache", place=place)
     check(found)
     assert found.log is not None

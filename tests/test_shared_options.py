@@ -59,8 +59,9 @@ def test_without_cache_all_is_compiled_anew_to_the_same_answer_and_nothing_is_ke
     assert not (tmp_path / "kernels").exists()
     assert not list((tmp_path / "temporary").iterdir())
     told = result.stderr.splitlines()
-    assert any(line.startswith("  derived statics, statics_") for line in told)
-    assert any(line.startswith("  compiled find_equilibrium: ") for line in told)
+    assert any(line.startswith("  derived rest, rest_") for line in told)
+    assert any(line.startswith("  compiled passes of rest: ") for line in told)
+    assert any(line.startswith("  compiled newton.") for line in told)
 
 
 def test_quiet_and_verbose_exclude_each_other() -> None:

@@ -96,7 +96,8 @@ def _print_equations(scene: Any, latex: bool) -> None:
     from continuum_dyn.equations.virtual_power import derive_dynamics
     from statics.derivation.virtual_work import collect
 
-    forces = derive_dynamics(scene)
+    structure = scene.structure
+    forces = derive_dynamics(structure)
     write = _latex if latex else _text
     used: set[str] = set()
     typer.echo("\nOne segment: its far end seen from its near disk (Eq. 11)")
@@ -108,7 +109,7 @@ def _print_equations(scene: Any, latex: bool) -> None:
         ("disk", ("disk", "mass"), forces.disk),
         *(("point of the core", ("mass",), point) for point in forces.core[:1]),
     ):
-        groups = [(effect, pairs) for effect, pairs in collect(scene.effects, places, at) if pairs]
+        groups = [(effect, pairs) for effect, pairs in collect(structure.forms, places, at) if pairs]
         if not groups:
             continue
         typer.echo(f"\nOne {where}: loads P and the displacements r they work along (Eq. 1)")

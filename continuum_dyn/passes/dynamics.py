@@ -133,7 +133,7 @@ class Dynamics:
         Shape (disks, 3), m, m, rad: the velocities under rates of that size, on a base that does not move.
         """
         q, _ = self.split(y[None, : 2 * self.size])
-        _, velocity, _ = self._observed(q, change[None], inputs[None])
+        _, velocity, _ = self._observed(q, np.ascontiguousarray(change)[None], inputs[None])
         return velocity[0, self.scene.arm.disk_nodes]
 
     def _observed(

@@ -10,12 +10,17 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 from numba import types
+from numba.core.errors import TypingError
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import lower_builtin
 
+NOT_CONTIGUOUS = "a pass takes contiguous arrays: it knows no strides"
+
 
 def run(address: int, n: int, scalars: np.ndarray, *arrays: np.ndarray) -> None:
-    """Run the pass at that address over n segments; arrays are contiguous."""
+    """Run the pass at that address over n segments. Raises ``ValueError`` for arrays with strides."""
+    if not all(array.flags.c_contiguous for array in (scalars, *arrays)):
+        raise ValueError(NOT_CONTIGUOUS)
     pointers = [array.ctypes.data for array in (scalars, *arrays)]
     kind = ctypes.CFUNCTYPE(None, ctypes.c_int64, *([ctypes.c_void_p] * len(pointers)))
     kind(int(address))(n, *pointers)
@@ -26,7 +31,9 @@ class _TypeOfRun(AbstractTemplate):
     """Tells numba that ``run`` takes any arrays and returns nothing."""
 
     def generic(self, args: Any, kws: Any) -> Any:
-        """The signature for these types."""
+        """The signature for these types; arrays with strides are refused."""
+        if any(getattr(kind, "layout", "C") != "C" for kind in args[2:]):
+            raise TypingError(NOT_CONTIGUOUS)
         return signature(types.none, *args)
 
 

@@ -2,8 +2,8 @@
 
 The text is a small language: assignments, + - * / **, numbers, reads and writes of ``array[i, column]``,
 ``min``, ``max``, ``abs``, some of ``math``, a conditional expression, calls of functions that stand above,
-and in those an ``if`` with two arms, of which the names live on that both assign. Anything else is refused by
-name.
+and in those an ``if`` with two arms, of which the names live on that both assign. Anything else is refused
+by name.
 
 A pass becomes
 
@@ -52,8 +52,9 @@ def lower(
     slots: Mapping[str, int],
     lanes: int = 1,
 ) -> str:
-    """LLVM's text of a module's passes; ``widths`` are the arrays' columns, ``slots`` places in ``scalars``.
+    """LLVM's text of the passes of a module.
 
+    ``widths`` are the arrays' columns, ``slots`` the places in ``scalars``.
     Raises ``LoweringError`` for what the language does not have.
     """
     functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
@@ -201,6 +202,8 @@ class _Code:
             self.store(array, place, self.value(value))
         elif isinstance(target, ast.Tuple):
             values = self.several(value)
+            if len(values) != len(target.elts):
+                raise _refusal(target)
             for part, found in zip(target.elts, values, strict=True):
                 if not isinstance(part, ast.Name):
                     raise _refusal(part)
@@ -219,7 +222,10 @@ class _Code:
             and isinstance(node.func, ast.Name)
             and node.func.id in self.unit.functions
         ):
-            return self.inlined(self.unit.functions[node.func.id], node.args)
+            function = self.unit.functions[node.func.id]
+            if node.keywords or len(node.args) != len(function.args.args):
+                raise _refusal(node)
+            return self.inlined(function, node.args)
         raise _refusal(node)
 
     def inlined(self, function: ast.FunctionDef, arguments: Sequence[ast.expr]) -> list[str]:
@@ -281,16 +287,21 @@ class _Code:
     def place(self, node: ast.Subscript) -> tuple[str, str]:
         """Array and place of ``array[i, column]``, ``array[0, column]`` or ``array[column]``."""
         array = self.scope.get(node.value.id) if isinstance(node.value, ast.Name) else None
-        if not isinstance(array, str) or array.startswith(("%", "<", "0x")):
+        if not isinstance(array, str) or _is_number(array):
             raise _refusal(node)
-        if isinstance(node.slice, ast.Constant):
-            return array, str(node.slice.value)
-        parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else []
-        if len(parts) != 2 or not isinstance(parts[1], ast.Constant):
+        match node.slice:
+            case ast.Constant(value=int() as column) if array not in self.unit.widths:
+                return array, str(column)
+            case ast.Tuple(elts=[row_part, ast.Constant(value=int() as column)]):
+                width = self.unit.widths.get(array, 0)
+            case _:
+                raise _refusal(node)
+        if column >= width:
             raise _refusal(node)
-        column, width = parts[1].value, self.unit.widths[array]
-        if isinstance(parts[0], ast.Constant) and parts[0].value == 0:
+        if isinstance(row_part, ast.Constant) and row_part.value == 0:
             return array, str(column)
+        if not isinstance(row_part, ast.Name) or self.scope.get(row_part.id) != "i":
+            raise _refusal(node)
         row = self.assign(f"mul nsw i64 {self.index}, {width}")
         return array, self.assign(f"add nsw i64 {row}, {column}")
 
@@ -299,7 +310,7 @@ class _Code:
         match node:
             case ast.Constant(value=int() | float() as number):
                 return self.unit.constant(float(number))
-            case ast.Name(id=name) if isinstance(self.scope.get(name), str):
+            case ast.Name(id=name) if _is_number(self.scope.get(name)):
                 return str(self.scope[name])
             case ast.Subscript():
                 return self.load(*self.place(node))
@@ -360,6 +371,8 @@ class _Code:
 
     def call(self, node: ast.Call) -> str:
         """The value of a call of a function of one number or two, or of ``min`` and ``max`` of several."""
+        if node.keywords or not node.args:
+            raise _refusal(node)
         values = [self.value(argument) for argument in node.args]
         match node.func:
             case ast.Name(id="max" | "min" as name):
@@ -368,11 +381,13 @@ class _Code:
                     chosen = self.compare("ogt" if name == "max" else "olt", value, result)
                     result = self.select(chosen, value, result)
                 return result
-            case ast.Name(id="abs"):
+            case ast.Name(id="abs") if len(values) == 1:
                 return self.intrinsic("fabs", values[0])
-            case ast.Attribute(value=ast.Name(id="math"), attr=name) if name in INTRINSICS:
+            case ast.Attribute(value=ast.Name(id="math"), attr=name) if (
+                name in INTRINSICS and len(values) == 1
+            ):
                 return self.intrinsic(name, values[0])
-            case ast.Attribute(value=ast.Name(id="math"), attr=name) if name in LIBRARY:
+            case ast.Attribute(value=ast.Name(id="math"), attr=name) if LIBRARY.get(name) == len(values):
                 return self.library(name, values)
         raise _refusal(node)
 
@@ -386,6 +401,11 @@ class _Code:
             one = self.assign(f"call double @{name}({', '.join(f'double {part}' for part in parts)})")
             result = self.assign(f"insertelement {self.unit.type} {result}, double {one}, i32 {lane}")
         return result
+
+
+def _is_number(value: Any) -> bool:
+    """Whether what a name stands for is a number, and no array, index or tuple."""
+    return isinstance(value, str) and value.startswith(("%", "<", "0x"))
 
 
 def _number(node: ast.expr) -> float | None:
