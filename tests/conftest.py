@@ -26,7 +26,6 @@ from statics import (
     Gravity,
     Scene,
     StaticSolver,
-    codegen,
 )
 
 settings.register_profile("same_every_time", derandomize=True, deadline=None)
