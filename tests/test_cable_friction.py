@@ -25,9 +25,9 @@ from statics import (
     InputError,
     Outcome,
     Scene,
-    codegen,
 )
 from statics.equilibria import Equilibrium, Slip, StaticSolver
+from statics.passes.rest_passes import REST
 from statics.ramp import ramp
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
@@ -116,8 +116,6 @@ def test_work_around_the_loop_is_what_friction_takes() -> None:
 
 def test_cable_without_friction_leaves_no_trace() -> None:
     """With a coefficient of zero nothing of it is in the generated source."""
-    from statics.derivation import at_rest as statics_kernel
-
     without = Scene(rubbing().arm, (Bending(), Extension(), Gravity(), Cables()))
     sources = [REST.write(scene.structure).partition("\n\n")[2] for scene in (rubbing(0.0), without)]
     assert sources[0].partition("import math")[2] == sources[1].partition("import math")[2]

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.scenario.profiles import Step
 from continuum_dyn.scenario.solver import Solver
-from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Outcome, Scene, codegen
+from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Outcome, Scene
 from statics.arc_length import follow
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.ramp import ramp
