@@ -96,7 +96,7 @@ def _print_equations(scene: Any, latex: bool) -> None:
     from continuum_dyn.equations.virtual_power import derive_dynamics
     from statics.derivation.virtual_work import collect
 
-    forces = derive_dynamics(scene)
+    forces = derive_dynamics(scene.structure)
     write = _latex if latex else _text
     used: set[str] = set()
     typer.echo("\nOne segment: its far end seen from its near disk (Eq. 11)")
