@@ -1,32 +1,38 @@
 """The search without a potential, held against the one by energy: on scenes that have one."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from conftest import rone2012
 
-from statics import Outcome, Scene, StaticSolver, search, virtual_work
+from statics import Outcome, Scene, StaticSolver
+from statics.derivation import virtual_work
+from statics.kernels.loading import Kernel, load
+from statics.passes import search
+from statics.passes.pseudo_transient import find_balance
+from statics.passes.rest_passes import REST
 
 
 @pytest.fixture(scope="module")
-def kernel() -> Any:
-    """The kernel of the paper's arm as it would be if no potential of it were known, as plain Python."""
+def kernel(tmp_path_factory: pytest.TempPathFactory) -> Kernel:
+    """The kernel of the paper's arm as it would be if no potential of it were known."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(virtual_work, "have_potentials", lambda _groups, _coordinates: False)
-        text = REST.write(rone2012().structure)
-    assert "negative_pivots" not in text
-    names: dict[str, Any] = {}
-    exec(text.replace("from numba import njit\n", "njit = lambda **_: lambda function: function\n"), names)
-    return names
+        patch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path_factory.mktemp("kernels") / "apart"))
+        kernel = load(rone2012().structure, REST)
+    assert "negative_pivots" not in kernel.text
+    assert not kernel.conservative
+    return kernel
 
 
-def balanced(kernel: Any, scene: Scene, tension: float) -> tuple[int, int, np.ndarray]:
+def balanced(kernel: Kernel, scene: Scene, tension: float) -> tuple[int, int, np.ndarray]:
     """How the search without a potential ends from straight, its iterations, the coordinates."""
-    segments, disks = (scene.table(at, kernel[f"{at.upper()}_COLUMNS"]) for at in ("segment", "disk"))
+    segments, disks = (
+        scene.table("segment", kernel.segment_columns),
+        scene.table("disk", kernel.disk_columns),
+    )
     q = np.zeros((scene.arm.disks, 2))
     numbers = np.array([tension]), segments, disks, scene.arm.rest_length, 200
-    return *kernel["find_equilibrium"](q, *numbers), q
+    return *find_balance(kernel.passes, q, *numbers), q
 
 
 @pytest.mark.parametrize(
@@ -34,7 +40,7 @@ def balanced(kernel: Any, scene: Scene, tension: float) -> tuple[int, int, np.nd
     [(4, 1.0, 270, 2.0), (12, 1e-2, 200, 0.3), (16, 1e-3, 300, 0.0), (8, 1e-5, 20, 3e-4), (6, 3e-3, 85, 0.0)],
 )
 def test_search_by_residual_ends_where_the_search_by_energy_does(
-    kernel: Any, disks: int, stiffness: float, direction: float, tension: float
+    kernel: Kernel, disks: int, stiffness: float, direction: float, tension: float
 ) -> None:
     """Soft arms under their weight in all directions, where full Newton steps go astray."""
     angle = np.radians(direction)
@@ -47,6 +53,6 @@ def test_search_by_residual_ends_where_the_search_by_energy_does(
     np.testing.assert_allclose(q, rest.coordinates, atol=1e-9)
 
 
-def test_search_by_residual_ends_at_the_named_limit(kernel: Any) -> None:
+def test_search_by_residual_ends_at_the_named_limit(kernel: Kernel) -> None:
     ended, _, _ = balanced(kernel, rone2012(), 100.0)
     assert ended == search.LIMIT

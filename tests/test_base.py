@@ -2,15 +2,17 @@
 
 from dataclasses import replace
 from math import pi
-from typing import Any
 
 import numpy as np
 import pytest
-from conftest import MOTION, UPPER, rone2012
+from conftest import MOTION as IN_MOTION
+from conftest import UPPER, rone2012
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from continuum_dyn.equations import in_motion as motion_kernel
+from continuum_dyn.passes.accelerations import acceleration
+from continuum_dyn.passes.dynamics import Dynamics
+from continuum_dyn.passes.motion_passes import MOTION
 from statics import (
     Arm,
     Base,
@@ -23,12 +25,13 @@ from statics import (
     InputError,
     Scene,
     StaticSolver,
-    codegen,
     disk_loads,
 )
 from statics.equilibria import Equilibrium
 from statics.judges.exact_rod import exact_rod
 from statics.judges.rone2012 import PrintedArm
+from statics.kernels.slots import SCALARS
+from statics.passes.rest_passes import REST
 
 ANGLES, PLACES = st.floats(-7.0, 7.0), st.floats(-1.0, 1.0)
 
@@ -108,13 +111,13 @@ def test_loads_of_the_cables_turn_with_the_base() -> None:
 
 
 def test_arm_without_a_base_has_no_trace_of_it_in_its_kernels() -> None:
-    scene = Scene(rone2012().arm, (*rone2012().effects, *MOTION))
+    scene = Scene(rone2012().arm, (*rone2012().effects, *IN_MOTION))
     for source in (MOTION.write(scene.structure), REST.write(scene.at_rest.structure)):
         assert not [word for word in ("base_", "transport") if word in source]
 
 
 def test_base_that_stays_has_no_trace_of_motion_in_its_kernel() -> None:
-    scene = mounted(Scene(rone2012().arm, (*rone2012().effects, *MOTION)), Base(angle=1.0))
+    scene = mounted(Scene(rone2012().arm, (*rone2012().effects, *IN_MOTION)), Base(angle=1.0))
     source = MOTION.write(scene.structure)
     assert "base_theta" in source
     assert not [word for word in ("base_velocity", "base_acceleration", "transport") if word in source]
@@ -124,18 +127,18 @@ def test_base_that_stays_has_no_trace_of_motion_in_its_kernel() -> None:
 
 
 def accelerations(scene: Scene, inputs: np.ndarray) -> np.ndarray:
-    """Of one state that moves, by the kernel as plain Python."""
-    kernel: Any = codegen.load_interpreted(scene, motion_kernel.RECIPE)
-    tables = scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)
+    """Of one state that moves."""
+    kernel, segments, disks = Dynamics(scene).linearized
     q, u = np.random.default_rng(1).uniform(-0.5, 0.5, (2, scene.arm.segments, 2)) * (1.0, 1e-4)
-    w = np.empty_like(q)
-    kernel.acceleration(q, 30.0 * u, inputs, *tables, np.empty((len(q), kernel.CHAIN_COLUMNS)), w)
+    chain, work, w = np.empty((len(q), kernel.widths["chain"])), np.empty((2, *q.shape)), np.empty_like(q)
+    scalars = np.empty(SCALARS)
+    acceleration(kernel.passes, q, 30.0 * u, inputs, segments, disks, chain, work, w, scalars)
     return w
 
 
 @pytest.mark.parametrize("base", [Base(), Base(moves=True)])
 def test_base_at_the_origin_along_x_is_no_base(base: Base) -> None:
-    without = Scene(rone2012().arm, (*rone2012().effects, *MOTION))
+    without = Scene(rone2012().arm, (*rone2012().effects, *IN_MOTION))
     there = mounted(without, base)
     inputs = there.check_tension(1.0)
     assert len(inputs) == len(there.inputs) == (10 if base.moves else 4)

@@ -18,6 +18,8 @@ from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes
+from continuum_dyn.passes.accelerations import acceleration
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.scenario.intervals import Span, spans
 from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, Ramp, Sine, SmoothRamp, Step, Table
@@ -30,6 +32,7 @@ from continuum_dyn.views.playback.measures import measures_of
 from continuum_dyn.views.playback.story import story_of
 from statics import Arm, Base, Bending, Gravity, InputError, Outcome, Scene
 from statics.effects import Effect
+from statics.kernels.slots import SCALARS
 
 STILL = Constant(0.0)
 SWEPT = (SmoothRamp(0.0, 0.03, 0.01, 0.11), STILL, Sine(-0.2, 0.2, 9.0, phase=pi / 2))
@@ -42,17 +45,13 @@ def shaken() -> Scenario:
 
 
 def small_arm(*more: Effect, disks: int = 2) -> Scene:
-    """An inextensible arm on a base that moves: its kernels run as plain Python here."""
+    """An inextensible arm on a base that moves."""
     arm = Arm.preset("rone2012", disks=disks, base=Base(moves=True))
     return Scene(arm, (Bending(), Inertia(), *more))
 
 
 def mounted(scenario: Scenario, **changes: Any) -> Scene:
     return Scene(replace(scenario.scene.arm, **changes), scenario.scene.effects)
-
-
-def interpreted(scene: Scene) -> Dynamics:
-    return Dynamics(scene)
 
 
 def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> list[Span]:
@@ -62,7 +61,7 @@ def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> list[Span
 
 
 def moved(scene: Scene, stretches: list[Span], solver: Solver, samples: int = 21) -> Trajectory:
-    dynamics = interpreted(scene)
+    dynamics = Dynamics(scene)
     times = np.linspace(0.0, stretches[-1].end, samples)
     start = dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs)))
     monitor = Monitor(inspect=inspector(dynamics))
@@ -74,10 +73,10 @@ def moved(scene: Scene, stretches: list[Span], solver: Solver, samples: int = 21
 
 def accelerations(scene: Scene, inputs: np.ndarray) -> np.ndarray:
     q, u = np.random.default_rng(3).uniform(-1.0, 1.0, (2, scene.arm.segments, 1))
-    dynamics = interpreted(scene)
-    w = np.empty_like(q)
-    chain = np.empty((len(q), dynamics.kernel.CHAIN_COLUMNS))
-    dynamics.kernel.acceleration(q, 30.0 * u, inputs, dynamics.segments, dynamics.disks, chain, w)
+    kernel, segments, disks = Dynamics(scene).linearized
+    chain, work, w = np.empty((len(q), kernel.widths["chain"])), np.empty((2, *q.shape)), np.empty_like(q)
+    scalars = np.empty(SCALARS)
+    acceleration(kernel.passes, q, 30.0 * u, inputs, segments, disks, chain, work, w, scalars)
     return w
 
 
@@ -104,7 +103,7 @@ def test_one_segment_on_a_rotating_base_feels_the_centrifugal_force() -> None:
     inertia, slope = rho_1**2 + rho**2 / 4, rho_1 * rho_2 + rho * rho_1 / 4
     w = (-m * slope * u**2 + m * omega**2 * rho * rho_1 - EJ * phi / L) / (m * inertia)
     moment = m * (2 * rho * rho_1 * u * (omega + u / 2) + rho**2 * w / 2)
-    dynamics = interpreted(scene)
+    dynamics = Dynamics(scene)
     y = dynamics.state(np.array([[phi]]), np.array([[u]]))
     rotating = np.array([[0.0, value, 0.0, 0.0, 0.0, 0.0] for value in (0, 0, 1.1, 0, 0, omega, 0, 0, 0)])
     span = Span(0.0, 1.0, rotating)
@@ -118,7 +117,7 @@ def test_one_segment_on_a_rotating_base_feels_the_centrifugal_force() -> None:
 
 def test_jacobian_is_exact_where_the_base_moves() -> None:
     """The integrand of the work, too, against differences of sixth order."""
-    dynamics = interpreted(small_arm(Gravity(), MaterialDamping(1.2e-3)))
+    dynamics = Dynamics(small_arm(Gravity(), MaterialDamping(1.2e-3)))
     span = driven(*SWEPT, 0.2)[1]
     random = np.random.default_rng(4)
     y = dynamics.state(random.uniform(-0.5, 0.5, (2, 1)), random.uniform(-20.0, 20.0, (2, 1)))
@@ -215,8 +214,8 @@ def test_modes_are_those_of_the_arm_on_its_base_at_rest(shaken: Scenario) -> Non
 
 
 def lowest_mode(scene: Scene) -> Mode:
-    """About the straight arm, without a kernel compiled."""
-    dynamics, inputs = interpreted(scene), scene.check_tension([])
+    """About the straight arm."""
+    dynamics, inputs = Dynamics(scene), scene.check_tension([])
     span = spans([Constant(float(value)) for value in inputs], 1.0)[0]
     return modes(dynamics, dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs))), span)[0]
 

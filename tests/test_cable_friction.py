@@ -27,6 +27,7 @@ from statics import (
     Scene,
 )
 from statics.equilibria import Equilibrium, Slip, StaticSolver
+from statics.passes.rest_passes import REST
 from statics.ramp import ramp
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"

@@ -1,8 +1,6 @@
 """The core's own mass, spread along each segment: its quadrature, its weight, its absence."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,15 +8,18 @@ import whole_arm
 from conftest import moving, rone2012
 from whole_arm import WholeArm, directional, heavy_scene, random_state
 
-from continuum_dyn import implicit_kernel, midpoint_kernel, motion_kernel
 from continuum_dyn.effects import Inertia
 from continuum_dyn.passes.dynamics import Dynamics
-from statics import Arm, Bending, Gravity, Payload, Scene, codegen, equilibrium, statics_kernel
+from continuum_dyn.passes.motion_passes import LINEARIZED, MIDPOINT, MOTION
+from continuum_dyn.scenario.intervals import Span
+from statics import Arm, Bending, Gravity, Payload, Scene, equilibrium
 from statics.core_mass import AT_END, AT_POINT, FRACTIONS
 from statics.effects import Effect
 from statics.judges.exact_rod import exact_rod
+from statics.kernels.loading import Family, kernel_key
+from statics.passes.rest_passes import REST
 
-WRITERS = (motion_kernel.write, implicit_kernel.write, midpoint_kernel.write, statics_kernel.write)
+FAMILIES = (LINEARIZED, MOTION, MIDPOINT, REST)
 
 
 def with_core(scene: Scene, density: float = 7850.0) -> Scene:
@@ -34,20 +35,18 @@ def bare(segments: int, weight: float, *effects: Effect) -> Scene:
 # ---- only where it is asked for ----
 
 
-@pytest.mark.parametrize("write", WRITERS)
-def test_core_without_density_is_in_no_line_of_the_generated_source(write: Callable[[Scene], str]) -> None:
-    scene = moving(rone2012(), damping=write != midpoint_kernel.write)
-    scene = scene.at_rest if write == statics_kernel.write else scene
-    assert "core_" not in write(scene)
-    assert "core_point_mass" in write(with_core(scene))
+@pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
+def test_core_without_density_is_in_no_line_of_the_generated_source(family: Family) -> None:
+    scene = moving(rone2012(), damping=family is not MIDPOINT)
+    scene = scene.at_rest if family is REST else scene
+    assert "core_" not in family.write(scene.structure)
+    assert "core_point_mass" in family.write(with_core(scene).structure)
 
 
 def test_core_with_density_is_in_no_line_where_nothing_acts_on_masses() -> None:
     weightless = with_core(rone2012()).without("gravity")
     assert "core_" not in REST.write(weightless.structure)
-    assert codegen.kernel_key(weightless, statics_kernel.RECIPE) == codegen.kernel_key(
-        rone2012().without("gravity"), statics_kernel.RECIPE
-    )
+    assert kernel_key(weightless.structure, REST) == kernel_key(rone2012().without("gravity").structure, REST)
 
 
 # ---- the quadrature ----
@@ -136,7 +135,6 @@ def test_fall_of_a_loose_core_begins_like_that_of_a_rod_on_a_hinge() -> None:
     """
     scene = Scene(bare(1, 2.0).arm, (Gravity((0.0, -9.81)), Inertia()))
     dynamics = Dynamics(scene)
-    rate: Any = dynamics.kernel.rate
     start = dynamics.state(np.zeros((1, 1)))
-    found = rate(0.0, start, np.zeros((0, 5)), dynamics.segments, dynamics.disks, 1)[1]
+    found = dynamics.rate(0.0, start, Span(0.0, 1.0, np.zeros((0, 6))))[1]
     assert found == pytest.approx(-10 / 3 * 9.81, rel=1e-12)

@@ -9,7 +9,8 @@ from whole_arm import difference_matrix, directional, gradient, random_state, re
 from whole_cables import WholeCables
 
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
-from continuum_dyn.equations import in_motion as motion_kernel
+from continuum_dyn.passes.dynamics import Dynamics
+from continuum_dyn.scenario.intervals import Span
 from statics import (
     Arm,
     Bending,
@@ -19,8 +20,7 @@ from statics import (
     Extension,
     Gravity,
     Scene,
-    codegen,
-    statics_kernel,
+    StaticSolver,
 )
 from statics.arm import CableKind
 
@@ -75,25 +75,17 @@ def pieces_of(scene: Scene, drive: np.ndarray) -> np.ndarray:
     return pieces
 
 
-def kernel_of(scene: Scene, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
-    kernel: Any = codegen.load_interpreted(scene, recipe)
-    return kernel, scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)
-
-
 @pytest.mark.parametrize(("kinds", "subsegments"), ON_ANY_MESH)
 def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
     kinds: tuple[CableKind, ...], subsegments: int
 ) -> None:
     scene = scene_of(kinds, subsegments, moves=True)
-    oracle, (kernel, segments, disks) = (
-        WholeCables(scene, drive_of(kinds)),
-        kernel_of(scene, motion_kernel.RECIPE),
-    )
-    pieces = pieces_of(scene, oracle.drive)
+    oracle, dynamics = WholeCables(scene, drive_of(kinds)), Dynamics(scene)
+    span = Span(0.0, 1.0, pieces_of(scene, oracle.drive))
     for seed in range(3):
         q, u = random_state(scene, seed, bend=0.7)
         y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
-        rate = kernel.rate(0.0, y, pieces, segments, disks, q.shape[1])
+        rate = dynamics.rate(0.0, y, span)
         expected = whole_arm.accelerations(oracle.arm, q, u, oracle.in_motion(q, u))
         assert relative_error(rate[q.size : 2 * q.size].reshape(q.shape), expected) < 1e-11
         drives, lengths = oracle.drives(q), oracle.lengths
@@ -109,33 +101,34 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
 @pytest.mark.parametrize("kinds", KINDS)
 def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...]) -> None:
     scene = scene_of(kinds, moves=True)
-    kernel, segments, disks = kernel_of(scene, motion_kernel.RECIPE)
-    pieces = pieces_of(scene, drive_of(kinds))
+    dynamics, span = Dynamics(scene), Span(0.0, 1.0, pieces_of(scene, drive_of(kinds)))
     q, u = random_state(scene, seed=1, bend=0.7)
-    numbers = pieces, segments, disks, q.shape[1]
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
     steps = np.concatenate([np.tile([1e-3, 1e-5], len(q)), np.tile([1e-2, 1e-4], len(q)), [1.0, 1.0]])
-    expected = difference_matrix(lambda y: kernel.rate(0.0, y, *numbers), y, steps)
-    found = kernel.rate_jacobian(0.0, y, *numbers)
+    expected = difference_matrix(lambda y: dynamics.rate(0.0, y, span), y, steps)
+    found = dynamics.jacobian(0.0, y, span)
     assert np.abs(found - expected).max(axis=1) == pytest.approx(0.0, abs=1e-6 * np.abs(expected).max())
     np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-8 * np.abs(expected).max())
 
 
-def newton_step(scene: Scene, q: np.ndarray, drive: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, ...]:
+def newton_step(scene: Scene, q: np.ndarray, drive: np.ndarray, before: np.ndarray) -> tuple[Any, ...]:
     """Residual and Newton step of the chain at rest with the pivots' signs, and how many are negative."""
-    kernel, segments, disks = kernel_of(scene, statics_kernel.RECIPE)
+    solver = StaticSolver(scene)
+    kernel, segments, disks = solver.kernel, solver.segments, solver.disks
     for number, lengths in enumerate(before, start=1):
-        if (name := f"length_before_{number}") in kernel.SEGMENT_COLUMNS:
-            segments[:, kernel.SEGMENT_COLUMNS.index(name)] = np.repeat(lengths, scene.arm.subsegments)
+        if (name := f"length_before_{number}") in kernel.segment_columns:
+            segments[:, kernel.segment_columns.index(name)] = np.repeat(lengths, scene.arm.subsegments)
     residual, descent, change = (np.empty_like(q) for _ in range(3))
-    chain, pivots = np.empty((len(q), kernel.CHAIN_COLUMNS)), np.empty((len(q), 3))
-    kernel.pose_sweep(q, drive, segments, disks, chain)
-    kernel.residual_sweep(disks, chain, residual)
-    conservative = not hasattr(kernel, "ELIMINATE_HELD_START")
-    start = (0.0, 0.0, 1.0, *kernel.ELIMINATE_START[3:]) if conservative else kernel.ELIMINATE_START
-    counted = kernel.eliminate_sweep(start, segments, disks, chain, residual, descent, pivots)[0]
-    kernel.substitute_sweep(chain, descent, change)
-    return residual, change, counted
+    chain, pivots = np.empty((len(q), kernel.widths["chain"])), np.empty((len(q), 3))
+    if "beyond" in kernel.signatures:
+        kernel.run("lengths", q, drive, segments, chain)
+        kernel.run("beyond", chain)
+    kernel.run("pose", q, drive, segments, disks, chain)
+    kernel.run("residual", disks, chain, residual)
+    weights = {"keep_sign": 1.0} if kernel.conservative else {"slowing": 0.0}
+    counted = kernel.run("eliminate", segments, disks, chain, residual, descent, pivots, **weights)
+    kernel.run("substitute", chain, descent, change)
+    return residual, change, counted.get("negative_pivots", np.nan)
 
 
 @pytest.mark.parametrize(("kinds", "subsegments"), ON_ANY_MESH)

@@ -2,21 +2,20 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from conftest import SCENARIOS, motion
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
-from continuum_dyn.equations.families import RECIPE, write
 from continuum_dyn.modes import modes_at_rest
 from continuum_dyn.passes.dynamics import Dynamics
+from continuum_dyn.passes.motion_passes import MOTION
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step, Table
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy, RampStudy
-from statics import DiskLoad, DiskLoads, InputError, Outcome, Scene, codegen, equilibrium
+from statics import DiskLoad, DiskLoads, InputError, Outcome, Scene, equilibrium
 
 
 @pytest.fixture(scope="module")
@@ -36,17 +35,14 @@ def test_constant_factor_is_a_constant_load(shaken: Scenario) -> None:
     by_factor = with_loads(shaken, driven, factors=(Constant(3.0),))
     by_load = with_loads(shaken, tripled)
     assert by_factor.scene.inputs == ("tension_1", "load_factor_1")
-    np.testing.assert_allclose(interpreted_rate(by_factor), interpreted_rate(by_load), rtol=1e-12)
+    np.testing.assert_allclose(rate_of(by_factor), rate_of(by_load), rtol=1e-12)
 
 
-def interpreted_rate(scenario: Scenario) -> np.ndarray:
-    """dy/dt of one state that moves, without anything compiled."""
-    scene = scenario.scene
-    kernel: Any = codegen.load_interpreted(scene, RECIPE)
-    tables = scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)
+def rate_of(scenario: Scenario) -> np.ndarray:
+    """dy/dt of one state that moves."""
     y = np.append(np.random.default_rng(1).uniform(-1, 1, 8), [0.0, 0.0])
     (span,) = spans(scenario.profiles, 1.0)
-    return kernel.rate(0.3, y, span.pieces, *tables, 1)
+    return Dynamics(scenario.scene).rate(0.3, y, span)
 
 
 @pytest.mark.slow
@@ -128,8 +124,8 @@ def test_ramp_takes_lists_of_factors_as_long_as_those_of_tensions(shaken: Scenar
 
 
 def test_scene_without_driven_loads_has_none_in_its_kernel(shaken: Scenario) -> None:
-    assert "load_factor" not in write(with_loads(shaken, DiskLoad(4)).scene)
-    assert "load_factor_1" in write(shaken.scene)
+    assert "load_factor" not in MOTION.write(with_loads(shaken, DiskLoad(4)).scene.structure)
+    assert "load_factor_1" in MOTION.write(shaken.scene.structure)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """Over the registry: every effect names what it is made of, and leaves no trace where it is left out."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +15,10 @@ from continuum_dyn.effects import (
     MaterialDamping,
     QuadraticDrag,
 )
-from continuum_dyn.equations import in_motion as motion_kernel
 from continuum_dyn.equations.virtual_power import derive_dynamics, partial_velocity
+from continuum_dyn.passes.dynamics import Dynamics
+from continuum_dyn.passes.motion_passes import MOTION
+from continuum_dyn.scenario.intervals import Span
 from statics import (
     Arm,
     DiskLoad,
@@ -26,13 +27,12 @@ from statics import (
     Gravity,
     InputError,
     Scene,
-    codegen,
-    statics_kernel,
 )
 from statics.arm import CableKind
 from statics.derivation.segment import DiskSymbols, SegmentSymbols
 from statics.derivation.virtual_work import collect, partial_displacement
 from statics.effects import Effect
+from statics.passes.rest_passes import REST
 from statics.quantities import QUANTITIES
 
 ARM = Arm.preset("rone2012", cables=(replace(UPPER, friction=0.2),))
@@ -110,25 +110,23 @@ def test_effects_that_are_there_leave_their_traces() -> None:
     assert not [trace for traces in TRACES.values() for trace in traces if trace not in source]
 
 
-def interpreted_rate(scene: Scene) -> np.ndarray:
-    """dy/dt of one state that moves, without anything compiled."""
-    kernel: Any = codegen.load_interpreted(scene, motion_kernel.RECIPE)
-    tables = (scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS))
+def rate_of(scene: Scene) -> np.ndarray:
+    """dy/dt of one state that moves."""
     q, u = random_state(scene, seed=1)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
     pieces = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0]])
-    return kernel.rate(0.0, y, pieces, *tables, len(scene.coordinates))
+    return Dynamics(scene).rate(0.0, y, Span(0.0, 1.0, pieces))
 
 
 @pytest.mark.parametrize("effect", WITHOUT_EFFECT, ids=lambda effect: effect.name)
 def test_effect_with_parameters_of_zero_is_no_effect(effect: Effect) -> None:
     without = everything_but(effect.name)
-    found = interpreted_rate(Scene(ARM, (*without.effects, effect)))
-    np.testing.assert_allclose(found, interpreted_rate(without), rtol=1e-11)
+    found = rate_of(Scene(ARM, (*without.effects, effect)))
+    np.testing.assert_allclose(found, rate_of(without), rtol=1e-11)
 
 
 def test_statics_knows_nothing_of_motion() -> None:
-    source = statics_kernel.write(Scene(ARM, ONE_OF_EACH).at_rest)
+    source = REST.write(Scene(ARM, ONE_OF_EACH).at_rest.structure)
     assert not [word for word in ("_rate", "velocity", "far_acceleration", "node_inertia") if word in source]
 
 
@@ -159,7 +157,7 @@ def _free_symbols(load: object) -> set[object]:
 @pytest.mark.parametrize("name", DAMPING)
 def test_what_dissipates_takes_energy_in_any_motion_and_has_a_symmetric_damping_matrix(name: str) -> None:
     effect = next(effect for effect in ONE_OF_EACH if effect.name == name)
-    forces = derive_dynamics(Scene(ARM, {effect, Extension()}))
+    forces = derive_dynamics(Scene(ARM, {effect, Extension()}).structure)
     on_disks, on_segments = (forces.disk, forces.on_disk), (forces.segment, forces.on_segment)
     at, part = on_disks if acts_on_disks(effect) else on_segments
     random = np.random.default_rng(2)

@@ -63,6 +63,19 @@ class Unvalued(HardeningSpring):
         return {}
 
 
+@dataclass(frozen=True)
+class ReadsItsNumber(Spring):
+    """It writes its own stiffness into its pair, where a kernel would keep it for every other."""
+
+    name: ClassVar[str] = "reads_its_number"
+    place: ClassVar[Place] = "disk"
+    k: float = 300.0
+
+    def pairs(self, at: Any) -> list[Pair]:
+        """One pair, wrong: the spring's force, deflection."""
+        return [Pair(-self.k * at.position[1], at.position[1])]
+
+
 @pytest.fixture(autouse=True)
 def glossary(monkeypatch: pytest.MonkeyPatch) -> None:
     entry = Quantity("spring_stiffness", "c", "N/m", "force of a spring over its elongation")
@@ -80,19 +93,24 @@ def test_force_of_an_effect_is_the_gradient_of_its_energy(effect: Effect, subseg
     scene = scene_with(effect, subsegments)
     solver, tension = StaticSolver(scene), np.array([0.7])
     kernel, q = solver.kernel, random_state(scene, seed=1, bend=0.7)[0]
-    chain, residual = np.empty((len(q), kernel.CHAIN_COLUMNS)), np.empty_like(q)
+    chain, residual = np.empty((len(q), kernel.widths["chain"])), np.empty_like(q)
 
     def potential(flat: np.ndarray) -> np.ndarray:
-        found = kernel.pose_sweep(flat.reshape(q.shape), tension, solver.segments, solver.disks, chain)
-        return np.array([found[0]])
+        found = kernel.run("pose", flat.reshape(q.shape), tension, solver.segments, solver.disks, chain)
+        return np.array([found["potential"]])
 
     steps = np.tile([1e-2, 1e-2 * scene.arm.rest_length], len(q))
     slope = difference_matrix(potential, q.ravel(), steps).reshape(q.shape)
     potential(q.ravel())
-    kernel.residual_sweep(solver.disks, chain, residual)
+    kernel.run("residual", solver.disks, chain, residual)
     assert relative_error(residual, slope) < 1e-9
 
 
 def test_quantity_without_a_value_is_named() -> None:
     with pytest.raises(InputError, match="'spring_stiffness' has no value on each disk"):
         StaticSolver(scene_with(Unvalued()))
+
+
+def test_field_that_pairs_read_is_named() -> None:
+    with pytest.raises(InputError, match=r"'reads_its_number' reads its field 'k' in pairs\(\).*at\.k"):
+        StaticSolver(scene_with(ReadsItsNumber()))

@@ -125,7 +125,7 @@ def test_equilibrium_that_flutters_is_unstable_and_says_how(tmp_path: Path) -> N
 def test_interrupted_while_stability_is_judged_it_keeps_the_equilibrium(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its kernels may have to be compiled first, which takes long."""
+    """Its kernels may have to be derived first, which takes a while."""
     at_call("continuum_dyn.simulation.at_rest:judge", 1, lambda: raise_signal(SIGINT), monkeypatch.setattr)
     run = simulate(edited(JET, tmp_path, ALONG, EQUILIBRIUM, CONSTANT))
     assert (run.outcome, len(run.equilibria)) == (Outcome.INTERRUPTED, 1)

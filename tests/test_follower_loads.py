@@ -12,11 +12,11 @@ from conftest import JET, at_rest, cantilever, edited, motion
 from scipy.integrate import solve_ivp
 from whole_arm import difference_matrix, full_scene, random_state, relative_error, spanned_scene
 
-from continuum_dyn import implicit_kernel, load_scenario, motion_kernel, simulate
+from continuum_dyn import load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping
 from continuum_dyn.integrators import choose
-from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.passes.motion_passes import MOTION
+from continuum_dyn.scenario.intervals import Span, spans
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import (
@@ -27,12 +27,12 @@ from statics import (
     InputError,
     Outcome,
     Scene,
-    codegen,
+    StaticSolver,
     equilibrium,
-    statics_kernel,
 )
 from statics.derivation.virtual_work import derive_statics
 from statics.judges.exact_rod import exact_rod
+from statics.kernels.loading import kernel_key
 
 FOLLOWERS = (DiskLoad(2, (0.5, -0.9), 0.01, follower=True), DiskLoad(1, (-0.7, 0.4), follower=True))
 
@@ -51,16 +51,10 @@ def inextensible(disks: int) -> Scene:
 # ---- forces ----
 
 
-def kernel_of(scene: Scene, recipe: codegen.Recipe) -> tuple[Any, np.ndarray, np.ndarray]:
-    kernel: Any = codegen.load_interpreted(scene, recipe)
-    return kernel, scene.table("segment", kernel.SEGMENT_COLUMNS), scene.table("disk", kernel.DISK_COLUMNS)
-
-
 def accelerations(scene: Scene, q: np.ndarray, u: np.ndarray, inputs: np.ndarray) -> np.ndarray:
-    kernel, segments, disks = kernel_of(scene, motion_kernel.RECIPE)
     pieces = np.array([[0.0, value, 0.0, 0.0, 0.0, 0.0] for value in inputs]).reshape(-1, 6)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
-    rate = kernel.rate(0.0, y, pieces, segments, disks, q.shape[1])
+    rate = Dynamics(scene).rate(0.0, y, Span(0.0, 1.0, pieces))
     return rate[q.size : 2 * q.size].reshape(q.shape)
 
 
@@ -85,12 +79,10 @@ def test_constant_factor_is_a_constant_follower() -> None:
     np.testing.assert_allclose(found, accelerations(constant, q, u, np.empty(0)), rtol=1e-12)
 
 
-def residual_of(
-    kernel: Any, segments: np.ndarray, disks: np.ndarray, tension: np.ndarray, q: np.ndarray
-) -> np.ndarray:
-    chain, residual = np.empty((len(q), kernel.CHAIN_COLUMNS)), np.empty_like(q)
-    kernel.pose_sweep(q, tension, segments, disks, chain)
-    kernel.residual_sweep(disks, chain, residual)
+def residual_of(solver: StaticSolver, tension: np.ndarray, q: np.ndarray) -> np.ndarray:
+    chain, residual = np.empty((len(q), solver.kernel.widths["chain"])), np.empty_like(q)
+    solver.kernel.run("pose", np.ascontiguousarray(q), tension, solver.segments, solver.disks, chain)
+    solver.kernel.run("residual", solver.disks, chain, residual)
     return residual
 
 
@@ -107,10 +99,8 @@ def test_follower_does_work_round_a_closed_loop_and_a_dead_load_does_not() -> No
     follower, dead = (cantilever(2, DiskLoad(2, (-3.0, 1.0), follower=follows)) for follows in (True, False))
 
     def by_chain(scene: Scene) -> float:
-        kernel, segments, disks = kernel_of(scene, statics_kernel.RECIPE)
-        return round_a_loop(
-            scene, lambda q, v: -float(np.sum(residual_of(kernel, segments, disks, np.empty(0), q) * v))
-        )
+        solver = StaticSolver(scene)
+        return round_a_loop(scene, lambda q, v: -float(np.sum(residual_of(solver, np.empty(0), q) * v)))
 
     def along_the_way(q: np.ndarray, v: np.ndarray) -> float:
         theta = whole_arm.poses(arm, q)[2]
@@ -133,25 +123,25 @@ any_chain = pytest.mark.parametrize("scene_of", [inextensible, full_scene, spann
 @any_chain
 def test_static_newton_step_equals_the_dense_solution(scene_of: Callable[[int], Scene]) -> None:
     scene = with_followers(scene_of(3), *FOLLOWERS)
-    kernel, segments, disks = kernel_of(scene.at_rest, statics_kernel.RECIPE)
+    solver = StaticSolver(scene)
+    kernel, segments, disks = solver.kernel, solver.segments, solver.disks
     tension = np.array([1.3, 0.7])[: scene.cables]
     unit, slowing = np.array([1.0, scene.arm.rest_length])[: len(scene.coordinates)], 0.02
 
     def scaled(z: np.ndarray) -> np.ndarray:
-        return (unit * residual_of(kernel, segments, disks, tension, unit * z.reshape(-1, unit.size))).ravel()
+        return (unit * residual_of(solver, tension, unit * z.reshape(-1, unit.size))).ravel()
 
     for seed in range(3):
         q, _ = random_state(scene, seed, bend=0.7)
         matrix = difference_matrix(scaled, (q / unit).ravel(), np.full(q.size, 0.01))
         assert np.abs(matrix - matrix.T).max() > 1e-3 * scene.arm.rest_length
         matrix += slowing * np.eye(q.size)
-        chain = np.empty((len(q), kernel.CHAIN_COLUMNS))
+        chain = np.empty((len(q), kernel.widths["chain"]))
         residual, step, descent = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-        kernel.pose_sweep(q, tension, segments, disks, chain)
-        kernel.residual_sweep(disks, chain, residual)
-        start = (slowing, *kernel.ELIMINATE_START[1:])
-        kernel.eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
-        kernel.substitute_sweep(chain, descent, step)
+        kernel.run("pose", q, tension, segments, disks, chain)
+        kernel.run("residual", disks, chain, residual)
+        kernel.run("eliminate", segments, disks, chain, residual, descent, descent, slowing=slowing)
+        kernel.run("substitute", chain, descent, step)
         dense = np.linalg.solve(matrix, -(unit * residual).ravel()).reshape(q.shape) * unit
         assert relative_error(step, dense) < 1e-9
 
@@ -160,17 +150,17 @@ def test_static_newton_step_equals_the_dense_solution(scene_of: Callable[[int], 
 def test_implicit_newton_step_equals_the_dense_solution(scene_of: Callable[[int], Scene]) -> None:
     """(M + C g + K g^2) x = -r at a state at rest, with each matrix from differences of the residual."""
     scene, g = with_followers(scene_of(3), *FOLLOWERS), 2e-3
-    kernel, segments, disks = kernel_of(scene, implicit_kernel.RECIPE)
+    kernel, segments, disks = Dynamics(scene).motion
     tension = np.array([1.3, 0.7])[: scene.cables]
     q, _ = random_state(scene, seed=5, bend=0.7)
     shape, still = q.shape, np.zeros_like(q)
-    chain = np.empty((len(q), kernel.CHAIN_COLUMNS))
+    chain = np.empty((len(q), kernel.widths["chain"]))
     residual, step, descent = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     unit = np.tile(np.array([1.0, scene.arm.rest_length])[: shape[1]], shape[0])
 
     def at(*state: np.ndarray) -> np.ndarray:
-        kernel.motion_sweep(*state, tension, segments, disks, chain)
-        kernel.residual_sweep(disks, chain, residual)
+        kernel.run("motion", *state, tension, segments, disks, chain)
+        kernel.run("residual", disks, chain, residual)
         return residual.ravel().copy()
 
     zero = np.zeros(q.size)
@@ -178,9 +168,9 @@ def test_implicit_newton_step_equals_the_dense_solution(scene_of: Callable[[int]
     damping = difference_matrix(lambda z: at(q, z.reshape(shape), still), zero, unit)
     mass = difference_matrix(lambda z: at(q, still, z.reshape(shape)), zero, unit)
     expected = np.linalg.solve(mass + g * damping + g**2 * stiffness, -at(q, still, still)).reshape(shape)
-    start = (g, g**2, *kernel.ELIMINATE_START[2:])
-    kernel.eliminate_sweep(start, segments, disks, chain, residual, descent, descent)
-    kernel.substitute_sweep(chain, descent, step)
+    weights = {"damping_weight": g, "stiffness_weight": g**2}
+    kernel.run("eliminate", segments, disks, chain, residual, descent, descent, **weights)
+    kernel.run("substitute", chain, descent, step)
     assert relative_error(step, expected) < 1e-8
 
 
@@ -229,9 +219,7 @@ def test_scene_without_followers_has_none_in_its_kernel() -> None:
     dead, follower = (cantilever(3, DiskLoad(3, (1.0, 0.0), follower=follows)) for follows in (False, True))
     assert "follower" not in MOTION.write(dead.structure)
     assert "follower_force_x" in MOTION.write(follower.structure)
-    assert codegen.kernel_key(dead, motion_kernel.RECIPE) != codegen.kernel_key(
-        follower, motion_kernel.RECIPE
-    )
+    assert kernel_key(dead.structure, MOTION) != kernel_key(follower.structure, MOTION)
 
 
 def test_scene_names_what_has_no_potential() -> None:

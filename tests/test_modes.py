@@ -16,9 +16,9 @@ from whole_arm import bare_scene, difference_matrix, full_scene
 from continuum_dyn import Scenario, load_scenario
 from continuum_dyn.cli import app
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
-from continuum_dyn.equations.dynamics import Dynamics
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import MOST_COORDINATES, Mode, RestModes, modes_at_rest, rates_without
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import spans
 from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.solver import Solver

@@ -57,9 +57,9 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(program: Path, *arguments: str) -> str:
-    """What Python prints in the copy, its kernels interpreted and kept apart."""
+    """What Python prints in the copy, its kernels kept apart."""
     kernels = str(program / "kernels")
-    return walk_through.run(program, *arguments, CONTINUUM_DYN_CACHE=kernels, NUMBA_DISABLE_JIT="1")
+    return walk_through.run(program, *arguments, CONTINUUM_DYN_CACHE=kernels)
 
 
 def command_line(program: Path, *arguments: str) -> str:

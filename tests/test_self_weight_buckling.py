@@ -1,6 +1,5 @@
 """An upright arm under its own weight: critical loads, and the two equilibria above them."""
 
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -10,16 +9,11 @@ from scipy.optimize import bisect
 
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.record import read_log, write_log
-from statics import Arm, Bending, Critical, Gravity, Scene, StaticSolver, codegen
+from statics import Arm, Bending, Critical, Gravity, Scene, StaticSolver
 
 GREENHILL = 7.8373
 """Critical weight per length q of an upright column, q L^3 / EJ (Greenhill 1881)."""
 BUCKLING = Path(__file__).parents[1] / "scenarios" / "self_weight_buckling.toml"
-
-
-@cache
-def kernel(scene: Scene, recipe: codegen.Recipe) -> object:
-    return codegen.load_interpreted(scene, recipe)
 
 
 def upright(disks: int, load: float) -> StaticSolver:

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from conftest import rone2012
 
-from statics import Arm, Bending, Each, Equilibrium, Gravity, Outcome, Scene, StaticSolver, codegen, search
+from statics import Arm, Bending, Each, Equilibrium, Gravity, Outcome, Scene, StaticSolver
+from statics.kernels.loading import load, load_interpreted
+from statics.passes import search
 
 SEED = 2012
 SIZES = (1, 2, 3, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
@@ -70,14 +72,14 @@ def trap() -> StaticSolver:
 def plain_newton(solver: StaticSolver) -> np.ndarray:
     """Coordinates after full steps with the exact matrix, from straight, until nothing moves any further."""
     kernel, segments, disks = solver.kernel, solver.segments, solver.disks
-    q, chain = np.zeros((len(segments), 1)), np.empty((len(segments), kernel.CHAIN_COLUMNS))
+    q, chain = np.zeros((len(segments), 1)), np.empty((len(segments), kernel.widths["chain"]))
     residual, descent, change = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-    pivots = np.empty((len(q), kernel.PIVOT_COLUMNS))
+    pivots = np.empty((len(q), kernel.widths["pivots"]))
     for _ in range(50):
-        kernel.pose_sweep(q, np.empty(0), segments, disks, chain)
-        kernel.residual_sweep(disks, chain, residual)
-        kernel.eliminate_exactly(segments, disks, chain, residual, descent, pivots)
-        kernel.substitute_sweep(chain, descent, change)
+        kernel.run("pose", q, np.empty(0), segments, disks, chain)
+        kernel.run("residual", disks, chain, residual)
+        kernel.run("eliminate", segments, disks, chain, residual, descent, pivots, keep_sign=1.0)
+        kernel.run("substitute", chain, descent, change)
         q += change
         if np.abs(change).max() < 1e-13:
             return q
@@ -97,7 +99,9 @@ def test_plain_newton_is_fooled_where_the_search_is_not() -> None:
 
 def test_interpreted_search_takes_the_same_way() -> None:
     scene = rone2012(disks=16, stiffness=1e-4, gravity=DIRECTIONS["upright"])
-    compiled, interpreted = (StaticSolver(scene, load).solve(np.zeros(1)) for load in (codegen.load))
+    compiled, interpreted = (
+        StaticSolver(scene, loader).solve(np.zeros(1)) for loader in (load, load_interpreted)
+    )
     assert compiled.iterations == interpreted.iterations
     assert len(compiled.left) == len(interpreted.left)
     assert compiled.outcome is interpreted.outcome

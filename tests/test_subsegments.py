@@ -17,8 +17,8 @@ from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation.accuracy import tip_distance
 from continuum_dyn.simulation.mesh import extrapolate, richardson, search_mesh
 from statics import Arm, Extension, InputError, Outcome, Scene, equilibrium
-from statics.derivation.at_rest import write
 from statics.judges.exact_rod import exact_rod
+from statics.passes.rest_passes import REST
 
 TENSIONS = (0.0, 1.0, 2.0, 5.0, 10.0)
 
@@ -70,8 +70,8 @@ def test_without_extension_the_order_is_the_same() -> None:
 
 def test_one_segment_from_disk_to_disk_costs_nothing_extra() -> None:
     """Nothing of spans is in its kernel: neither in the steps nor in the tables."""
-    assert "span" not in write(meshed(1))
-    assert "span" in write(meshed(2))
+    assert "span" not in REST.write(meshed(1).structure)
+    assert "span" in REST.write(meshed(2).structure)
 
 
 def test_balance_reaches_rounding_and_anchors_are_disks() -> None:

@@ -67,7 +67,7 @@ def derivatives(load: str, bend: float, stretch: float) -> dict[str, float]:
 
 
 class Swept:
-    """What the kernel's sweeps leave at coordinates q, shape (segments, 2)."""
+    """What the kernel's passes leave at coordinates q, shape (segments, 2)."""
 
     def __init__(self, load: str, q: np.ndarray, stiffness: float = 0.0) -> None:
         self.solver = StaticSolver(scene(len(q), load, stiffness))
@@ -75,14 +75,16 @@ class Swept:
         kernel, (segments, disks) = self.solver.kernel, (self.solver.segments, self.solver.disks)
         self.inputs = np.ones(1) if load == "cable" else np.empty(0)
         chain, self.pivots = (
-            np.empty((len(q), kernel.CHAIN_COLUMNS)),
-            np.empty((len(q), kernel.PIVOT_COLUMNS)),
+            np.empty((len(q), kernel.widths["chain"])),
+            np.empty((len(q), kernel.widths["pivots"])),
         )
         self.residual, descent, self.change = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-        self.potential = self.sign * kernel.pose_sweep(q, self.inputs, segments, disks, chain)[0]
-        kernel.residual_sweep(disks, chain, self.residual)
-        kernel.eliminate_exactly(segments, disks, chain, self.residual, descent, self.pivots)
-        kernel.substitute_sweep(chain, descent, self.change)
+        posed = kernel.run("pose", q, self.inputs, segments, disks, chain)
+        self.potential = self.sign * posed["potential"]
+        kernel.run("residual", disks, chain, self.residual)
+        inward = segments, disks, chain, self.residual, descent, self.pivots
+        kernel.run("eliminate", *inward, keep_sign=1.0)
+        kernel.run("substitute", chain, descent, self.change)
 
     @property
     def of_one_segment(self) -> dict[str, float]:

@@ -226,6 +226,10 @@ class _Printer(PythonCodePrinter):
     def _print_Heaviside(self, expression: Any) -> str:  # noqa: N802
         return f"(1.0 if {self._print(expression.args[0])} > 0.0 else 0.0)"
 
+    def _print_sign(self, expression: Any) -> str:
+        text = self._print(expression.args[0])
+        return f"(1.0 if {text} > 0.0 else (-1.0 if {text} < 0.0 else 0.0))"
+
     def _print_Max(self, expression: Any) -> str:  # noqa: N802
         return f"max({', '.join(map(self._print, expression.args))})"
 
