@@ -15,7 +15,7 @@ from continuum_dyn import Scenario, Trajectory, load_scenario
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import Monitor
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import equilibrium
@@ -41,7 +41,7 @@ class Case:
     def __init__(self, scenario: Scenario) -> None:
         assert isinstance(scenario.study, MotionStudy)
         self.dynamics = Dynamics(scenario.scene)
-        self.stretches = spans(scenario.profiles, scenario.study.duration)
+        self.stretches = cut_into_intervals(scenario.profiles, scenario.study.duration)
         self.samples = np.linspace(0.0, scenario.study.duration, scenario.study.samples)
         rest = equilibrium(scenario.scene, scenario.initial_inputs)
         self.start = self.dynamics.state(rest.coordinates)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span, inputs_of
+from continuum_dyn.scenario.intervals import Interval, inputs_at
 from continuum_dyn.scenario.solver import Solver
 
 
@@ -23,14 +23,14 @@ class Begun:
     counters: Mapping[str, int]
     columns: Mapping[str, np.ndarray]
 
-    def states(self, dynamics: Dynamics, stretches: list[Span]) -> tuple[np.ndarray, np.ndarray]:
+    def states(self, dynamics: Dynamics, stretches: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
         """States (samples, size) and inputs (samples, inputs) of the samples.
 
         Where a cable's displacement jumps just after the last of them, what the jump puts into its stretch
         is added to the input work.
         """
         given = self.columns
-        inputs = inputs_of(stretches, given["time"])
+        inputs = inputs_at(stretches, given["time"])
         pairs = (("bend_angle", "elongation"), ("bend_angle_rate", "elongation_rate"))
         q, u = (np.stack([given[name] for name in names[: dynamics.dofs]], axis=-1) for names in pairs)
         size = (len(q), dynamics.size)

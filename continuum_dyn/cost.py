@@ -17,7 +17,7 @@ from continuum_dyn.integration import inspector, integrate, warm_up
 from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.mesh import between
 from continuum_dyn.modes import rates
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
@@ -132,7 +132,7 @@ class Motion:
         if not isinstance(scenario.study, MotionStudy):
             raise InputError(f'cost is asked of a motion; this is a study of kind "{scenario.study.kind}".')
         self.dynamics = Dynamics(scenario.scene)
-        self.stretches = spans(scenario.profiles, scenario.study.duration)
+        self.stretches = cut_into_intervals(scenario.profiles, scenario.study.duration)
         self.samples = np.linspace(0.0, scenario.study.duration, scenario.study.samples)
         rest = StaticSolver(scenario.scene).solve(scenario.initial_inputs)
         if not rest.found:
@@ -219,7 +219,7 @@ def _prices(
 def _meshes(scenario: Scenario, progress: Callable[[str], None]) -> tuple[list[MeshPrice], str]:
     """The equilibrium under the last tensions and the motion on every mesh; or why there is no exact rod."""
     assert isinstance(scenario.study, MotionStudy)
-    last = spans(scenario.profiles, scenario.study.duration)[-1]
+    last = cut_into_intervals(scenario.profiles, scenario.study.duration)[-1]
     tension = last.inputs(np.array([last.end]))[0]
     progress("exact rod")
     try:

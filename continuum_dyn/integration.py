@@ -17,7 +17,7 @@ from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import IMPLICIT, METHODS, TABLEAUX, Budget, Monitor, check
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.samples import Samples
-from continuum_dyn.scenario.intervals import Span, inputs_of, joined_spans
+from continuum_dyn.scenario.intervals import Interval, inputs_at, join_intervals
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.trajectory import Trajectory
 from statics.outcome import Outcome
@@ -32,7 +32,7 @@ PART_OF_PERIOD = 1 / 20
 """Step of the midpoint rule, in the shortest period of the arm or of its drive."""
 
 
-def with_step(dynamics: Dynamics, solver: Solver, stretches: list[Span], y: np.ndarray) -> Solver:
+def with_step(dynamics: Dynamics, solver: Solver, stretches: list[Interval], y: np.ndarray) -> Solver:
     """The solver's settings, with the step that its method takes by default from rest at ``y``."""
     if solver.method != "midpoint" or solver.step is not None:
         return solver
@@ -42,9 +42,9 @@ def with_step(dynamics: Dynamics, solver: Solver, stretches: list[Span], y: np.n
     return replace(solver, step=PART_OF_PERIOD * 2.0 * np.pi / fastest)
 
 
-def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
+def warm_up(dynamics: Dynamics, solver: Solver, span: Interval) -> None:
     """Compile what the method needs, or load it compiled, so that what follows is solving alone."""
-    brief = Span(span.start, span.start + BRIEF, span.pieces)
+    brief = Interval(span.start, span.start + BRIEF, span.pieces)
     y = dynamics.state(np.zeros((dynamics.scene.arm.segments, dynamics.dofs)))
     dynamics.clearance(y)
     if solver.method in (*TABLEAUX, "midpoint"):
@@ -57,7 +57,7 @@ def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
         dynamics.jacobian(span.start, y, span)
 
 
-def add_jump(dynamics: Dynamics, before: Span, span: Span, monitor: Monitor) -> None:
+def add_jump(dynamics: Dynamics, before: Interval, span: Interval, monitor: Monitor) -> None:
     """Add what a jump of a cable's displacement puts into its stretch to the state's input work."""
     if not dynamics.scene.driven_by_length:
         return
@@ -87,7 +87,7 @@ def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome
 
 def integrate(
     dynamics: Dynamics,
-    stretches: list[Span],
+    stretches: list[Interval],
     samples: np.ndarray,
     y: np.ndarray,
     solver: Solver,
@@ -133,12 +133,14 @@ def integrate(
     return trajectory
 
 
-def _add_last_reached(gathered: Samples, joined: Sequence[Span], reached: tuple[float, np.ndarray]) -> None:
+def _add_last_reached(
+    gathered: Samples, joined: Sequence[Interval], reached: tuple[float, np.ndarray]
+) -> None:
     """The last acceptable state of a run that stopped early, unless it is a sample already."""
     t, y = reached
     if t > gathered.latest:
         time = np.array([t])
-        gathered.add(time, y[None, :], inputs_of(joined, time), np.zeros(1))
+        gathered.add(time, y[None, :], inputs_at(joined, time), np.zeros(1))
 
 
 def _counted(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
@@ -157,26 +159,26 @@ def _counted(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]
     }
 
 
-def _first_step(dynamics: Dynamics, span: Span) -> float:
+def _first_step(dynamics: Dynamics, span: Interval) -> float:
     """A step that resolves the arm and its drive: at rest, solvers left alone try the whole span."""
     fastest = max(dynamics.frequency, float(np.max(span.pieces[:, 4], initial=0.0)))
     return min(FIRST_STEP / fastest, span.end - span.start)
 
 
-def _joined(dynamics: Dynamics, solver: Solver, stretches: list[Span]) -> list[list[Span]]:
+def _joined(dynamics: Dynamics, solver: Solver, stretches: list[Interval]) -> list[list[Interval]]:
     """The spans that one solver may cross: the chain's own go on where neither forces nor a wave set in.
 
     Where nodes carry no mass a corner of the forces is a jump of their accelerations.
     """
     if solver.method not in TABLEAUX or dynamics.scene.arm.massless_nodes:
         return [[span] for span in stretches]
-    return joined_spans(stretches)
+    return join_intervals(stretches)
 
 
 def _solve(
     dynamics: Dynamics,
     solver: Solver,
-    joined: list[Span],
+    joined: list[Interval],
     at: np.ndarray,
     monitor: Monitor,
     gathered: Samples,
@@ -201,7 +203,7 @@ def _solve(
         if acceptable and until > done:
             times = at[done:until]
             states = stepper.dense_output()(times).T
-            gathered.add(times, states, inputs_of(joined, times), _step_sizes(stepper, times))
+            gathered.add(times, states, inputs_at(joined, times), _step_sizes(stepper, times))
             done = until
     return stepper
 
@@ -214,7 +216,7 @@ def _step_sizes(stepper: Any, times: np.ndarray) -> np.ndarray:
     return np.diff(ends)[np.clip(np.searchsorted(ends, times) - 1, 0, len(ends) - 2)]
 
 
-def _options(dynamics: Dynamics, solver: Solver, joined: list[Span]) -> dict[str, Any]:
+def _options(dynamics: Dynamics, solver: Solver, joined: list[Interval]) -> dict[str, Any]:
     """What the method needs beside the equations."""
     span = joined[0]
     if solver.method == "midpoint":

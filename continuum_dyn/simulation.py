@@ -19,7 +19,7 @@ from continuum_dyn.integrators import Budget, Monitor, choose
 from continuum_dyn.mesh import Mesh, extrapolated, to_mesh
 from continuum_dyn.resting_words import told_of_path, told_of_points, why
 from continuum_dyn.samples import Samples
-from continuum_dyn.scenario.intervals import Span, spans, spans_from
+from continuum_dyn.scenario.intervals import Interval, cut_into_intervals, intervals_after
 from continuum_dyn.scenario.scenario import MAX_STORED, Scenario
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy, RampStudy, StepResponseStudy
@@ -269,7 +269,7 @@ def _judged(dynamics: Dynamics, points: list[Equilibrium]) -> tuple[list[Equilib
 
 
 def _settled_on(
-    scenario: Scenario, study: MotionStudy, dynamics: Dynamics, y: np.ndarray, stretches: list[Span]
+    scenario: Scenario, study: MotionStudy, dynamics: Dynamics, y: np.ndarray, stretches: list[Interval]
 ) -> Solver:
     """The solver with what the program chooses: the method, and the midpoint rule's step."""
     solver, exact = scenario.solver, scenario.accuracy is not None
@@ -293,7 +293,7 @@ def _motion(
             statics.warm_up()
     except KeyboardInterrupt:
         return _interrupted_early(scenario)
-    stretches = spans(scenario.profiles, study.duration)
+    stretches = cut_into_intervals(scenario.profiles, study.duration)
     started = time.perf_counter()
     (start,) = ramp(statics, [scenario.initial_inputs])
     if not start.found:
@@ -395,7 +395,7 @@ def _moved_as_asked(
     so_far: Run,
     begun: Begun | None,
     dynamics: Dynamics,
-    stretches: list[Span],
+    stretches: list[Interval],
     y: np.ndarray,
     monitor: Monitor,
     sink: Sink | None,
@@ -412,7 +412,7 @@ def _moved_as_asked(
 def _moved(
     so_far: Run,
     dynamics: Dynamics,
-    stretches: list[Span],
+    stretches: list[Interval],
     y: np.ndarray,
     monitor: Monitor,
     sink: Sink | None,
@@ -431,7 +431,12 @@ def _moved(
 
 
 def _moved_on(
-    so_far: Run, begun: Begun, dynamics: Dynamics, stretches: list[Span], monitor: Monitor, sink: Sink | None
+    so_far: Run,
+    begun: Begun,
+    dynamics: Dynamics,
+    stretches: list[Interval],
+    monitor: Monitor,
+    sink: Sink | None,
 ) -> Trajectory:
     """The motion from where it was broken off; its samples are those asked for, as of one in one go."""
     assert isinstance(so_far.scenario.study, MotionStudy)
@@ -439,7 +444,7 @@ def _moved_on(
     states, inputs = begun.states(dynamics, stretches)
     asked = np.isin(times, np.linspace(0.0, study.duration, study.samples))
     done = times[asked], states[asked], inputs[asked], begun.columns["step_size"][asked]
-    rest = spans_from(stretches, float(times[-1]))
+    rest = intervals_after(stretches, float(times[-1]))
     if not rest:
         gathered = Samples(dynamics)
         gathered.add(*done)
@@ -452,7 +457,7 @@ def _moved_on(
 def _moved_accurately(
     so_far: Run,
     dynamics: Dynamics,
-    stretches: list[Span],
+    stretches: list[Interval],
     y: np.ndarray,
     monitor: Monitor,
     sink: Sink | None,

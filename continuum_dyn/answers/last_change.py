@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum_dyn.scenario.intervals import SAME, Span, spans
+from continuum_dyn.scenario.intervals import ROUNDING, Interval, cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import InputError
 
@@ -26,7 +26,7 @@ def last_change(scenario: Scenario, until: float) -> LastChange:
     """
     drives = (*scenario.drives, *scenario.load_factors, *scenario.base_motion)
     profiles = [profile for profile in drives if not isinstance(profile, tuple)]
-    stretches = spans(profiles, until)
+    stretches = cut_into_intervals(profiles, until)
     before = np.array([profile.initial for profile in profiles])
     changes = list(_changes(before, stretches))
     if not changes:
@@ -39,13 +39,13 @@ def last_change(scenario: Scenario, until: float) -> LastChange:
     return changes[-1]
 
 
-def _changes(before: np.ndarray, stretches: list[Span]) -> list[LastChange]:
+def _changes(before: np.ndarray, stretches: list[Interval]) -> list[LastChange]:
     """Jumps, and stretches of continuous change."""
     found: list[LastChange] = []
     goes_on = False
     for span in stretches:
         first, last = span.inputs(np.array([span.start, span.end]))
-        if np.any(np.abs(first - before) > SAME * (np.abs(first) + np.abs(before))):
+        if np.any(np.abs(first - before) > ROUNDING * (np.abs(first) + np.abs(before))):
             found.append(LastChange(span.start, span.start))
             goes_on = False
         if changing := bool(span.pieces[:, 2:4].any()):

@@ -14,7 +14,7 @@ from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.modes import FEW_COORDINATES, Mode, check, modes, still
 from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import codegen
@@ -136,7 +136,7 @@ def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
     dynamics = Dynamics(scenario.scene, codegen.load_interpreted if few else codegen.load)
     assert isinstance(scenario.study, MotionStudy)
     end = scenario.study.duration
-    inputs = spans(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
+    inputs = cut_into_intervals(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
     rest = [log.equilibria[name][-1] for name in ("bend_angle", "elongation") if name in log.equilibria]
     with np.errstate(all="ignore"):
         return modes(dynamics, dynamics.state(np.column_stack(rest)), still(inputs))

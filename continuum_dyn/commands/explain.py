@@ -86,7 +86,7 @@ def _modes(scenario: Any) -> Any:
 def _print_method(scenario: Any) -> None:
     from continuum_dyn.dynamics import Dynamics
     from continuum_dyn.integrators import choose
-    from continuum_dyn.scenario.intervals import spans
+    from continuum_dyn.scenario.intervals import cut_into_intervals
     from continuum_dyn.scenario.studies import MotionStudy
     from statics.equilibria import StaticSolver
 
@@ -95,7 +95,7 @@ def _print_method(scenario: Any) -> None:
     dynamics = Dynamics(scenario.scene)
     start = dynamics.state(StaticSolver(scenario.scene).solve(scenario.initial_inputs).coordinates)
     duration, exact = scenario.study.duration, scenario.accuracy is not None
-    choice = choose(dynamics, start, spans(scenario.profiles, duration)[0], duration, exact)
+    choice = choose(dynamics, start, cut_into_intervals(scenario.profiles, duration)[0], duration, exact)
     typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 

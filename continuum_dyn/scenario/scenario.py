@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, lowest
+from continuum_dyn.scenario.profiles import Constant, Piecewise, Profile, lower_bound
 from continuum_dyn.scenario.rates import Rate, check_smooth
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import MotionStudy, RampStudy, Study
@@ -16,7 +16,7 @@ from statics.errors import InputError
 from statics.scene import Scene
 
 MAX_STORED = 20_000_000
-"""Most segments times samples that a log may hold."""
+"""Largest number of segments times samples of a log."""
 
 
 def dissipated_by(scene: Scene) -> list[str]:
@@ -30,15 +30,15 @@ def _dissipates(scene: Scene, effect: Effect) -> bool:
 
 @dataclasses.dataclass(frozen=True)
 class Scenario:
-    """A scene, what drives each of its cables, and what is asked of it.
+    """A scene, its inputs over time, and a study of it.
 
     ``drives`` holds a profile for each cable, or for a ramp study a list for each: of tensions (N), or of
     displacements (m) of a cable that is driven by its length;
     ``text`` is the file that it was read from, ``tables`` those of the CSV files beside it, by name. With
     ``accuracy`` the solver's tolerances are the program's to choose; with ``chooses_mesh`` the number of the
-    arm's sub-segments, too. ``load_factors`` has likewise a profile or a list for each driven load,
+    arm's sub-segments, too. ``load_factors`` has a profile or a list for each driven load,
     ``base_motion`` profiles of x, y (m) and angle
-    (rad) of a base that moves. Raises ``InputError`` where these do not fit.
+    (rad) of a base that moves. Raises ``InputError`` if these do not fit.
     """
 
     scene: Scene
@@ -66,9 +66,9 @@ class Scenario:
             self._check_base()
         for cable, profile in zip(self.scene.arm.cables, self.drives, strict=False):
             name, pulled = cable.name, not cable.driven_by_length
-            if pulled and not isinstance(profile, tuple) and lowest(profile) < 0:
+            if pulled and not isinstance(profile, tuple) and (least := lower_bound(profile)) < 0:
                 raise InputError(
-                    f"cable '{name}': a cable cannot push; its tension comes down to {lowest(profile):g} N."
+                    f"cable '{name}': a cable cannot push; its tension comes down to {least:g} N."
                 )
         if self.chooses_mesh and self.accuracy is None:
             raise InputError('subsegments = "auto" needs an accuracy to aim at. Add [accuracy] tip, in m.')
@@ -150,26 +150,26 @@ class Scenario:
             )
 
     @property
-    def profiles(self) -> tuple[InPieces, ...]:
-        """What drives a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
+    def profiles(self) -> tuple[Piecewise, ...]:
+        """Profiles of a motion, or constants of an equilibrium, in the order of ``Scene.inputs``."""
         driven = (*self.drives, *self.load_factors)
         profiles = tuple(p for p in driven if not isinstance(p, tuple))
         if len(profiles) != len(driven):
             raise InputError(
                 f'lists of tensions or load factors belong to a "ramp" study; this is "{self.study.kind}".'
             )
-        return (*profiles, *self._others(profiles))
+        return (*profiles, *self._other_inputs(profiles))
 
-    def _others(self, driven: tuple[Any, ...]) -> tuple[InPieces, ...]:
-        """What drives a motion beside cables and loads, and the rates of cables that are driven by length."""
-        pose, motion = self._of_base
+    def _other_inputs(self, driven: tuple[Any, ...]) -> tuple[Piecewise, ...]:
+        """Inputs after cables and loads: the base's pose, rates of driven lengths, the base's motion."""
+        pose, motion = self._base_inputs
         drawn_in = (driven[number] for number in self.scene.driven_by_length)
         rates = (Constant(0.0) if isinstance(drive, tuple) else Rate(drive) for drive in drawn_in)
         return (*pose, *rates, *motion)
 
     @property
-    def _of_base(self) -> tuple[tuple[InPieces, ...], tuple[InPieces, ...]]:
-        """Its pose; and where it moves its velocities and its accelerations."""
+    def _base_inputs(self) -> tuple[tuple[Piecewise, ...], tuple[Piecewise, ...]]:
+        """The base's pose; and its velocities and accelerations, if it moves."""
         arm = self.scene.arm
         if not arm.base_moves:
             return (() if arm.base is None else tuple(map(Constant, arm.base_pose))), ()
@@ -186,7 +186,7 @@ class Scenario:
         return lists
 
     def with_mesh(self, subsegments: int, tip: float) -> "Scenario":
-        """The same with that many segments from disk to disk, in motion to within ``tip`` (m)."""
+        """The scenario with that many segments from disk to disk, in motion to within ``tip`` (m)."""
         arm = dataclasses.replace(self.scene.arm, subsegments=subsegments)
         return dataclasses.replace(
             self,
@@ -196,7 +196,7 @@ class Scenario:
         )
 
     def without(self, effect: str) -> "Scenario":
-        """The same without the effect of that name, and without what drove it."""
+        """The scenario without the effect of that name, and without its inputs."""
         scene = self.scene.without(effect)
         return dataclasses.replace(
             self,
@@ -215,5 +215,5 @@ class Scenario:
     def initial_inputs(self) -> np.ndarray:
         """Inputs of the equilibrium that a study starts from, in the order of ``Scene.inputs``."""
         driven = (*self.drives, *self.load_factors)
-        given = (*driven, *self._others(driven))
+        given = (*driven, *self._other_inputs(driven))
         return np.array([t[0] if isinstance(t, tuple) else t.initial for t in given], dtype=float)

@@ -51,7 +51,7 @@ class Solver:
 
 @dataclass(frozen=True, config=STRICT)
 class Accuracy:
-    """How close the tip must be to the exact motion of the same segments.
+    """Largest error of the tip against the exact motion of the same segments.
 
     The program chooses the tolerances, and checks. If it chooses the segments, too, the error is that
     against the continuous arm.

@@ -1,4 +1,4 @@
-"""Studies: what a scenario computes of its scene."""
+"""Kinds of study: equilibrium, ramp, motion, step response."""
 
 from typing import Annotated, Literal
 
@@ -8,19 +8,19 @@ from pydantic.dataclasses import dataclass
 from statics.checked import STRICT, Positive
 
 MAX_SAMPLES = 10**12
-"""No log may hold so many; larger numbers are no numbers to reckon with."""
+"""Largest number of samples that is read at all; no log may hold as many."""
 
 
 @dataclass(frozen=True, config=STRICT)
 class EquilibriumStudy:
-    """Where the arm rests under its tensions."""
+    """The equilibrium of the arm under its tensions."""
 
     kind: Literal["equilibrium"] = "equilibrium"
 
 
 @dataclass(frozen=True, config=STRICT)
 class RampStudy:
-    """Where the arm rests under one set of tensions and load factors after another."""
+    """Equilibria of the arm under one set of tensions and load factors after another."""
 
     path: Annotated[
         Literal["stable", "arc_length"],
@@ -34,7 +34,7 @@ class RampStudy:
 
 @dataclass(frozen=True, config=STRICT)
 class MotionStudy:
-    """How the arm moves from the equilibrium of the profiles' first tensions."""
+    """The motion of the arm from the equilibrium of the profiles' first tensions."""
 
     duration: Annotated[Positive, Field(description="length of the motion, s")]
     samples: Annotated[
@@ -48,7 +48,7 @@ class MotionStudy:
 
 @dataclass(frozen=True, config=STRICT)
 class StepResponseStudy(MotionStudy):
-    """How the arm moves, and whether it has settled to the equilibrium of the last tensions.
+    """The motion of the arm, and whether it settles to the equilibrium of the last tensions.
 
     Settled means: tip within ``settled_within`` of that equilibrium's, and slower than that distance per
     second.
