@@ -15,7 +15,7 @@ from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import Budget
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
-from continuum_dyn.record.resuming import logged_motion
+from continuum_dyn.record.resuming import resumption_of
 from continuum_dyn.record.writing import columns_of
 from continuum_dyn.scenario.intervals import cut_into_intervals, inputs_at
 from continuum_dyn.scenario.solver import Solver
@@ -86,7 +86,7 @@ def test_it_may_be_broken_off_any_number_of_times(tmp_path: Path) -> None:
     unbroken, log = simulate(scenario), broken_off(scenario, tmp_path / "log.h5", 50)
     assert unbroken.trajectory is not None
     for _ in range(3):
-        begun = logged_motion(log, logged_scenario(log))
+        begun = resumption_of(log, logged_scenario(log))
         run = simulate(logged_scenario(log), budget=Budget(steps=50), begun=begun)
         assert run.outcome is Outcome.BUDGET_EXCEEDED
         write_log(run, tmp_path / "log.h5")
@@ -142,7 +142,7 @@ def test_run_that_has_ended_is_not_run_again(tmp_path: Path) -> None:
 def test_samples_that_do_not_belong_to_the_scenario_are_refused(tmp_path: Path, spoil, said: str) -> None:
     log = broken_off(load_scenario(STEP), tmp_path / "log.h5", 40)
     with pytest.raises(LogError, match=said):
-        logged_motion(replace(log, **spoil(log)), logged_scenario(log))
+        resumption_of(replace(log, **spoil(log)), logged_scenario(log))
 
 
 def _without(log: Log, name: str) -> dict[str, np.ndarray]:
