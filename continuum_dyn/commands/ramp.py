@@ -45,7 +45,7 @@ def ramp(
     hold.
     """
     from continuum_dyn.answers.ramp import FIGURES, ramp_answers
-    from continuum_dyn.answers.ramp_rates import measured
+    from continuum_dyn.answers.ramp_rates import measure_at_other_rates
     from continuum_dyn.record import read_log
     from continuum_dyn.record.logged_scenario import logged_scenario
     from continuum_dyn.views.figures import ramp_plot
@@ -58,7 +58,7 @@ def ramp(
     make_folder(out)
     if measure:
         scenario, before = logged_scenario(read), found
-        found = with_status(read.title, lambda progress: measured(before, scenario, progress))
+        found = with_status(read.title, lambda progress: measure_at_other_rates(before, scenario, progress))
     picture = out / f"{log.stem}_ramp.png"
     save(ramp_plot.ramp(read.title, found), picture)
     verdicts = judged(asked, found.figures)

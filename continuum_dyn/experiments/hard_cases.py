@@ -29,7 +29,7 @@ TIGHTEST = 1e-13
 
 @dataclass(frozen=True)
 class HardCase:
-    """A scenario with its expectations; ``name`` is its file's, and says if extension was added or left out."""
+    """A scenario with its expectations; ``name`` is its file's, with a note on extension if changed."""
 
     name: str
     scenario: Scenario

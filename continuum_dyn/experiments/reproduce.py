@@ -25,7 +25,7 @@ TABLE_2_FINITE_ELEMENTS = np.array(
 )
 """x and y of the same disks by finite elements, m; Rone 2012, Table 2."""
 TABLE_2_PERCENT_ERROR = np.array([2.8268e-5, 3.6533e-5, 5.7060e-5, 6.9687e-5])
-"""Error of each disk's distance from the base, virtual work against finite elements, %; Rone 2012, Table 2."""
+"""Error of each disk's distance from the base against finite elements, %; Rone 2012, Table 2."""
 
 FIGURE_4_TENSIONS = (0.05, 0.1, 0.5, 1.0, 2.0)
 """Tensions of Rone 2012, Fig. 4, N. The text names 0.05, 0.1, 0.5 and 2."""

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from continuum_dyn.answers.loops import on_both_ways
-from continuum_dyn.answers.ramp import Path, RampAnswers
+from continuum_dyn.answers.loops import on_both_branches
+from continuum_dyn.answers.ramp import RampAnswers, TipPath
 from continuum_dyn.views.figures.axis_units import Axis, axis
 from statics.quantities import QUANTITIES
 
@@ -29,7 +29,7 @@ def ramp(title: str, found: RampAnswers) -> Figure:
     return figure
 
 
-def _along(found: RampAnswers, path: Path) -> np.ndarray:
+def _along(found: RampAnswers, path: TipPath) -> np.ndarray:
     """The tip along the straight way between the static ones at the least and the most of the drive, m."""
     ends = found.static.tip[[np.argmin(found.drive.values), np.argmax(found.drive.values)]]
     way = ends[1] - ends[0]
@@ -57,7 +57,7 @@ def _draw_paths(axes: Any, found: RampAnswers) -> None:
     )
     if found.motion is not None:
         axes.plot(values, place.per_si * _along(found, found.motion), "k-", lw=1.0, label="motion")
-    axes.set(xlabel=drive.label, ylabel=place.label, title="Path")
+    axes.set(xlabel=drive.label, ylabel=place.label, title="TipPath")
     axes.legend(fontsize=8)
 
 
@@ -73,7 +73,7 @@ def _draw_loop(axes: Any, found: RampAnswers) -> None:
         paths.insert(0, (found.motion, "in motion", "k-"))
     halves = []
     for path, _, _ in paths:
-        there, back = on_both_ways(found.loop, found.drive.values, _along(found, path))
+        there, back = on_both_branches(found.loop, found.drive.values, _along(found, path))
         halves.append(0.5 * (back - there))
     place = axis("travel", np.concatenate(halves), "tip, less the mean of both ways")
     for (_, label, look), half in zip(paths, halves, strict=True):
