@@ -28,7 +28,7 @@ from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, StepResponseStudy
 from continuum_dyn.views.playback.arm import moving_parts
 from continuum_dyn.views.playback.measures import measures_of
-from continuum_dyn.views.playback.story import story_of
+from continuum_dyn.views.playback.playback import playback_of
 from statics import Arm, Base, Bending, Gravity, InputError, Outcome, Scene, codegen
 from statics.effects import Effect
 
@@ -235,9 +235,9 @@ def test_log_and_recording_have_the_base_where_it_was(shaken: Scenario, tmp_path
     np.testing.assert_allclose(
         log.equilibria["disk_y"][:, -1] - y, log.equilibria["disk_y"][0, -1], atol=1e-9
     )
-    story = story_of(log)
-    assert story is not None
-    drawn: Any = moving_parts(story, np.arange(101), measures_of([story]))
+    playback = playback_of(log)
+    assert playback is not None
+    drawn: Any = moving_parts(playback, np.arange(101), measures_of([playback]))
     np.testing.assert_allclose(drawn["arm/base"].strips.mean(axis=1)[:, 1], y, atol=1e-12)
     np.testing.assert_allclose(drawn["arm/rim"].strips[:, 0, 1], y, atol=1e-12)
     tip = drawn["arm/rim"].strips[:, -1]

@@ -1,4 +1,4 @@
-"""The picture of a ramp: the motion on its static path, its lag, and the loop there and back."""
+"""The figure of a ramp: the motion on its static path, its lag, and the hysteresis loop."""
 
 from typing import Any
 
@@ -12,11 +12,11 @@ from continuum_dyn.views.figures.axis_units import Axis, axis
 from statics.quantities import QUANTITIES
 
 MARKS = 12
-"""Places on the static path that are marked."""
+"""Number of marks on the static path."""
 
 
 def ramp(title: str, found: RampAnswers) -> Figure:
-    """The tip along its way against the drive, the loop opened up, the lag over time and against the rate."""
+    """The tip's path against the drive, the loop opened up, the lag over time and against the rate."""
     moves = found.motion is not None
     figure = Figure(figsize=(8.6, 6.4) if moves else (8.6, 3.6), layout="constrained")
     grid = figure.subplots(2 if moves else 1, 2, squeeze=False)
@@ -30,10 +30,10 @@ def ramp(title: str, found: RampAnswers) -> Figure:
 
 
 def _along(found: RampAnswers, path: TipPath) -> np.ndarray:
-    """The tip along the straight way between the static ones at the least and the most of the drive, m."""
+    """The tip along the straight line between its equilibria at the least and the largest drive, m."""
     ends = found.static.tip[[np.argmin(found.drive.values), np.argmax(found.drive.values)]]
-    way = ends[1] - ends[0]
-    return (path.tip - ends[0]) @ way / (np.hypot(*way) or 1.0)
+    line = ends[1] - ends[0]
+    return (path.tip - ends[0]) @ line / (np.hypot(*line) or 1.0)
 
 
 def _drive_axis(found: RampAnswers) -> Axis:
@@ -43,7 +43,7 @@ def _drive_axis(found: RampAnswers) -> Axis:
 
 def _draw_paths(axes: Any, found: RampAnswers) -> None:
     drive, rest = _drive_axis(found), _along(found, found.static)
-    place = axis("travel", rest, "tip along its way")
+    place = axis("travel", rest, "tip along its branch")
     values = drive.per_si * found.drive.values
     every = max(1, len(values) // MARKS) if found.motion is not None else 1
     axes.plot(
@@ -62,7 +62,7 @@ def _draw_paths(axes: Any, found: RampAnswers) -> None:
 
 
 def _draw_loop(axes: Any, found: RampAnswers) -> None:
-    """Each way of the tip less the mean of both: a loop that is thin beside its length."""
+    """Draw each branch of the tip less the mean of both: the loop is thin beside its length."""
     drive = _drive_axis(found)
     axes.set(xlabel=drive.label, title="There and back")
     if found.loop is None:
@@ -97,11 +97,11 @@ def _draw_lag(axes: Any, found: RampAnswers) -> None:
 
 
 def _draw_rates(axes: Any, found: RampAnswers) -> None:
-    """The lag of each way and run against its rate, and where a proportional one comes to the error."""
+    """Draw the lag of each branch and run against its rate, and where a proportional one meets the error."""
     rate, within, error = (found.figures[n] for n in ("ramp_rate", "quasistatic_rate", "quasistatic_error"))
     assert rate is not None
     assert error is not None
-    runs = np.array([(way.ramp_rate, way.tip_lag) for way in found.lags])
+    runs = np.array([(branch.ramp_rate, branch.tip_lag) for branch in found.lags])
     others = np.array(found.measured).reshape(-1, 2)
     lag = axis("tip_lag", [error, *others[:, 1]], "largest lag")
     if within is not None:
