@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 MAX_SHOWN = 20
-"""Most departures of a file that are printed."""
+"""Largest number of departures of a file that are printed."""
 
 
 def validate(
