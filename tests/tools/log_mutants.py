@@ -1,8 +1,8 @@
 """Logs spoiled at random: in their bytes, or in what they hold, by way of HDF5 itself.
 
-``python tests/log_mutants.py --count 10000 --seed 0`` reads so many, each in a process of its own. Whatever
-ends other than in a log or in a ``LogError``, takes longer than ``SECONDS`` or more than ``MEMORY`` is
-printed, and the exit status is 1.
+``python tests/tools/log_mutants.py --count 10000 --seed 0`` reads so many, each in a process of its own.
+Whatever ends other than in a log or in a ``LogError``, takes longer than ``SECONDS`` or more than ``MEMORY``
+is printed, and the exit status is 1.
 """
 
 import argparse
@@ -30,7 +30,7 @@ from continuum_dyn.record.reading import list_departures
 from continuum_dyn.record.resuming import resumption_of
 from statics.errors import LogError
 
-SCENARIOS = Path(__file__).parents[1] / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SECONDS = 20
 """Longest time of the processor that one mutant may take."""
 MEMORY = 500_000_000
