@@ -8,7 +8,7 @@ import numpy as np
 
 from continuum_dyn import implicit_kernel, midpoint_kernel
 from continuum_dyn.motion_kernel import RECIPE
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics import codegen
 from statics.errors import InputError
 from statics.scene import Scene
@@ -57,11 +57,11 @@ class Dynamics:
         u = np.zeros_like(coordinates) if rates is None else rates
         return np.concatenate([coordinates.ravel(), u.ravel(), [0.0, 0.0]])
 
-    def rate(self, t: float, y: np.ndarray, span: Span) -> np.ndarray:
+    def rate(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
         """dy/dt."""
         return self.kernel.rate(t, y, span.pieces, self.segments, self.disks, self.dofs)
 
-    def jacobian(self, t: float, y: np.ndarray, span: Span) -> np.ndarray:
+    def jacobian(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
         """d(rate)/dy, exact."""
         return self.kernel.rate_jacobian(t, y, span.pieces, self.segments, self.disks, self.dofs)
 

@@ -16,7 +16,7 @@ from continuum_dyn import implicit_kernel, load_scenario, motion_kernel, simulat
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.effects import Inertia, MaterialDamping
 from continuum_dyn.integrators import choose
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import (
@@ -303,5 +303,5 @@ def test_bad_follower_is_named_with_what_is_allowed(tmp_path: Path, old: str, ne
 def test_undamped_motion_under_a_follower_is_never_left_to_the_midpoint_rule() -> None:
     scene = cantilever(2, DiskLoad(2, (0.0, 0.1), follower=True))
     dynamics = Dynamics(scene, codegen.load_interpreted)
-    start, still = dynamics.state(at_rest(scene).coordinates), spans((), 1e5)[0]
+    start, still = dynamics.state(at_rest(scene).coordinates), cut_into_intervals((), 1e5)[0]
     assert choose(dynamics, start, still, 1e5).method == "explicit"

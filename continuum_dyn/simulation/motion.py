@@ -8,7 +8,7 @@ import numpy as np
 
 from continuum_dyn.dynamics import Dynamics
 from continuum_dyn.integrators import Budget, Choice, Monitor, choose
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import inspector, integrate, warm_up, with_step
@@ -30,7 +30,7 @@ class Motion:
     def __init__(self, scenario: Scenario) -> None:
         self.scenario, self.study = scenario, scenario.require_motion("only a motion can be integrated")
         self.statics, self.dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
-        self.intervals = spans(scenario.profiles, self.study.duration)
+        self.intervals = cut_into_intervals(scenario.profiles, self.study.duration)
         self.samples = np.linspace(0.0, self.study.duration, self.study.samples)
 
     @cached_property
