@@ -15,7 +15,6 @@ from continuum_dyn.simulation.integration import inspector, integrate, warm_up, 
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
-from statics.errors import InputError
 from statics.interruption import Interruption
 from statics.ramp import ramp
 
@@ -41,9 +40,7 @@ class Motion:
 
     @cached_property
     def start(self) -> np.ndarray:
-        """State at the start, shape (size,). Raises ``InputError`` without an equilibrium to start from."""
-        if not self.rest.found:
-            raise InputError(f"the motion has no equilibrium to start from: {self.rest.outcome}.")
+        """State at the start, shape (size,); of no use if ``rest`` is not found."""
         return self.dynamics.state(self.rest.coordinates)
 
     @property
