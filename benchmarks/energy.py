@@ -15,7 +15,7 @@ import numpy as np
 from continuum_dyn import load_scenario
 from continuum_dyn.integrators import Budget, Monitor
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
 from continuum_dyn.scenario.profiles import Step
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import integrate, warm_up
@@ -37,7 +37,7 @@ def undamped(extension: bool) -> Scene:
     return Scene(scene.arm, (effect for effect in scene.effects if effect.name not in left_out))
 
 
-def first_period(dynamics: Dynamics, span: Span, y: np.ndarray) -> float:
+def first_period(dynamics: Dynamics, span: Interval, y: np.ndarray) -> float:
     """Longest period (s) of the motion linearized at a state at rest."""
     size = dynamics.size
     stiffness = -dynamics.jacobian(span.start, y, span)[size : 2 * size, :size]
@@ -56,8 +56,8 @@ def run(extension: bool, solver: Solver, periods: float, steps_a_period: int | N
     scene = undamped(extension)
     dynamics = Dynamics(scene)
     y = dynamics.state(equilibrium(scene, RELEASE.before).coordinates)
-    period = first_period(dynamics, spans((RELEASE,), 1.0)[0], y)
-    stretches = spans((RELEASE,), periods * period)
+    period = first_period(dynamics, cut_into_intervals((RELEASE,), 1.0)[0], y)
+    stretches = cut_into_intervals((RELEASE,), periods * period)
     if steps_a_period is not None:
         solver = replace(solver, step=period / steps_a_period)
     warm_up(dynamics, solver, stretches[0])

@@ -1,4 +1,4 @@
-"""Where ``continuum-dyn`` and ``python -m continuum_dyn`` begin: ready for Ctrl-C before all else."""
+"""Entry point of ``continuum-dyn`` and ``python -m continuum_dyn``, which handles Ctrl-C from the start."""
 
 import os
 import signal

@@ -27,14 +27,14 @@ from continuum_dyn.commands import (
     settle,
     validate,
 )
-from continuum_dyn.commands.terminal.extras import extras_named
+from continuum_dyn.commands.terminal.extras import naming_extras
 from continuum_dyn.commands.terminal.shared_options import (
     Quiet,
     Verbose,
     WithoutCache,
     with_shared_options,
 )
-from continuum_dyn.commands.terminal.show import wrapped
+from continuum_dyn.commands.terminal.show import wrap
 from statics.errors import ContinuumError
 
 BAD_INPUT = 2
@@ -112,10 +112,10 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def guarded(*arguments: Any, **options: Any) -> None:
         try:
-            with extras_named():
+            with naming_extras():
                 command(*arguments, **options)
         except ContinuumError as error:
-            typer.echo(wrapped(f"error: {error}"), err=True)
+            typer.echo(wrap(f"error: {error}"), err=True)
             raise typer.Exit(BAD_INPUT) from error
         except KeyboardInterrupt as error:
             typer.echo("interrupted", err=True)

@@ -8,7 +8,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.sparse.linalg import LinearOperator, eigs
 
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
 from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.scenario import Scenario
 from statics.equilibria import Equilibrium, StaticSolver
@@ -30,14 +30,14 @@ WITHIN = 1e-3
 """Relative error allowed to the iteration for the largest eigenvalue."""
 
 
-def rates(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[float, float]:
+def rates(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[float, float]:
     """Smallest and largest absolute eigenvalue (1/s) of the motion linearized at ``y``."""
     size = 2 * dynamics.size
     found = np.abs(np.linalg.eigvals(linearized(dynamics, y, span)[:size, :size]))
     return float(found.min()), float(found.max())
 
 
-def linearized(dynamics: Dynamics, y: np.ndarray, span: Span) -> np.ndarray:
+def linearized(dynamics: Dynamics, y: np.ndarray, span: Interval) -> np.ndarray:
     """d(rate)/dy. Raises ``InputError`` where it is beyond floating point."""
     matrix = dynamics.jacobian(span.start, y, span, once=True)
     if not np.isfinite(matrix).all():
@@ -48,7 +48,7 @@ def linearized(dynamics: Dynamics, y: np.ndarray, span: Span) -> np.ndarray:
     return matrix
 
 
-def fastest_frequency(dynamics: Dynamics, span: Span, y: np.ndarray) -> float:
+def fastest_frequency(dynamics: Dynamics, span: Interval, y: np.ndarray) -> float:
     """Largest natural frequency (rad/s) of the undamped motion linearized at a state at rest."""
     size = dynamics.size
     if size <= MOST_DENSE:
@@ -164,9 +164,9 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
         return None
 
 
-def still(inputs: np.ndarray) -> Span:
+def still(inputs: np.ndarray) -> Interval:
     """What drives the scene, staying as it is."""
-    return spans(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
+    return cut_into_intervals(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
 
 
 class _Motion(NamedTuple):
@@ -177,7 +177,7 @@ class _Motion(NamedTuple):
     coordinates: np.ndarray
 
 
-def modes(dynamics: Dynamics, y: np.ndarray, span: Span) -> tuple[Mode, ...]:
+def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]:
     """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first."""
     size, scales = dynamics.size, dynamics.scales()[: dynamics.size]
     jacobian = linearized(dynamics, y, span)[: 2 * size, : 2 * size]

@@ -268,7 +268,7 @@ PUBLIC: dict[Any, Iterable[str]] = {
         effect.__name__ for name, effect in EFFECTS.items() if name not in STATIC_EFFECTS
     ],
     continuum_dyn.scenario.profiles: [profile.__name__ for profile in PROFILES.values()],
-    continuum_dyn.scenario.intervals: ["Span", "spans"],
+    continuum_dyn.scenario.intervals: ["Interval", "cut_into_intervals"],
     continuum_dyn.scenario.studies: [study.__name__ for study in STUDIES.values()],
     continuum_dyn.scenario.solver: ["Solver", "Accuracy"],
     continuum_dyn.passes.dynamics: ["Dynamics", "Observation"],

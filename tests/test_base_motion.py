@@ -21,15 +21,15 @@ from continuum_dyn.modes import Mode, modes
 from continuum_dyn.passes.accelerations import acceleration
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.scenario.intervals import Span, spans
-from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, Ramp, Sine, SmoothRamp, Step, Table
+from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
+from continuum_dyn.scenario.profiles import Constant, Piecewise, Profile, Ramp, Sine, SmoothRamp, Step, Table
 from continuum_dyn.scenario.rates import Rate, check_smooth
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, StepResponseStudy
 from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.views.playback.arm import moving_parts
 from continuum_dyn.views.playback.measures import measures_of
-from continuum_dyn.views.playback.story import story_of
+from continuum_dyn.views.playback.playback import playback_of
 from statics import Arm, Base, Bending, Gravity, InputError, Outcome, Scene
 from statics.effects import Effect
 from statics.kernels.slots import SCALARS
@@ -54,13 +54,13 @@ def mounted(scenario: Scenario, **changes: Any) -> Scene:
     return Scene(replace(scenario.scene.arm, **changes), scenario.scene.effects)
 
 
-def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> list[Span]:
+def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> list[Interval]:
     rates = [Rate(profile) for profile in (x, y, angle)]
-    profiles: list[InPieces] = [x, y, angle, *rates, *map(Rate, rates)]
-    return spans(profiles, duration)
+    profiles: list[Piecewise] = [x, y, angle, *rates, *map(Rate, rates)]
+    return cut_into_intervals(profiles, duration)
 
 
-def moved(scene: Scene, stretches: list[Span], solver: Solver, samples: int = 21) -> Trajectory:
+def moved(scene: Scene, stretches: list[Interval], solver: Solver, samples: int = 21) -> Trajectory:
     dynamics = Dynamics(scene)
     times = np.linspace(0.0, stretches[-1].end, samples)
     start = dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs)))
@@ -106,7 +106,7 @@ def test_one_segment_on_a_rotating_base_feels_the_centrifugal_force() -> None:
     dynamics = Dynamics(scene)
     y = dynamics.state(np.array([[phi]]), np.array([[u]]))
     rotating = np.array([[0.0, value, 0.0, 0.0, 0.0, 0.0] for value in (0, 0, 1.1, 0, 0, omega, 0, 0, 0)])
-    span = Span(0.0, 1.0, rotating)
+    span = Interval(0.0, 1.0, rotating)
     assert dynamics.rate(0.0, y, span)[1] == pytest.approx(w, rel=1e-11)
     seen = dynamics.observe(y[None], span.inputs(np.zeros(1)))
     assert seen.ledger["input_power"][0] == pytest.approx(moment * omega, rel=1e-11)
@@ -193,9 +193,11 @@ def test_shaken_base_swings_the_arm_as_its_linear_motion_says(shaken: Scenario) 
     dynamics, y = Dynamics(small.scene), np.append(run.equilibria[0].coordinates.ravel(), np.zeros(10))
     still, lifted = np.zeros((2, 9, 6))
     lifted[7, 1] = 1.0
-    at_rest, pushed = (dynamics.rate(0.0, y, Span(0.0, 1.0, pieces)) for pieces in (still, lifted))
+    at_rest, pushed = (dynamics.rate(0.0, y, Interval(0.0, 1.0, pieces)) for pieces in (still, lifted))
     states = 2 * dynamics.size
-    matrix = 1j * omega * np.eye(states) - dynamics.jacobian(0.0, y, Span(0.0, 1.0, still))[:states, :states]
+    matrix = (
+        1j * omega * np.eye(states) - dynamics.jacobian(0.0, y, Interval(0.0, 1.0, still))[:states, :states]
+    )
     response = np.linalg.solve(matrix, (pushed - at_rest)[:states] * -size * omega**2)
     late = run.trajectory.time > 0.6
     expected = np.real(response[0] * np.exp(1j * omega * run.trajectory.time[late]))
@@ -216,7 +218,7 @@ def test_modes_are_those_of_the_arm_on_its_base_at_rest(shaken: Scenario) -> Non
 def lowest_mode(scene: Scene) -> Mode:
     """About the straight arm."""
     dynamics, inputs = Dynamics(scene), scene.check_tension([])
-    span = spans([Constant(float(value)) for value in inputs], 1.0)[0]
+    span = cut_into_intervals([Constant(float(value)) for value in inputs], 1.0)[0]
     return modes(dynamics, dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs))), span)[0]
 
 
@@ -231,9 +233,9 @@ def test_log_and_recording_have_the_base_where_it_was(shaken: Scenario, tmp_path
     np.testing.assert_allclose(
         log.equilibria["disk_y"][:, -1] - y, log.equilibria["disk_y"][0, -1], atol=1e-9
     )
-    story = story_of(log)
-    assert story is not None
-    drawn: Any = moving_parts(story, np.arange(101), measures_of([story]))
+    playback = playback_of(log)
+    assert playback is not None
+    drawn: Any = moving_parts(playback, np.arange(101), measures_of([playback]))
     np.testing.assert_allclose(drawn["arm/base"].strips.mean(axis=1)[:, 1], y, atol=1e-12)
     np.testing.assert_allclose(drawn["arm/rim"].strips[:, 0, 1], y, atol=1e-12)
     tip = drawn["arm/rim"].strips[:, -1]

@@ -22,7 +22,7 @@ from whole_arm import (
 
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.passes.motion_passes import MOTION
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics.arm import Cable
 from statics.equilibria import StaticSolver
 from statics.kernels.loading import load, load_interpreted
@@ -37,10 +37,10 @@ ROUNDING = 2e-12
 any_scene = pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, bare_scene])
 
 
-def pulling(scene: Scene) -> Span:
+def pulling(scene: Scene) -> Interval:
     """Tensions that change with time, for as many cables as the scene has."""
     pieces = np.array([[0.1, 1.3, 2.0, 0.4, 50.0, 0.3], [0.0, 0.7, -1.0, 0.0, 0.0, 0.0]])
-    return Span(0.1, 1.0, pieces[: scene.cables])
+    return Interval(0.1, 1.0, pieces[: scene.cables])
 
 
 def tension_at(scene: Scene) -> np.ndarray:

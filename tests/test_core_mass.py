@@ -11,7 +11,7 @@ from whole_arm import WholeArm, directional, heavy_scene, random_state
 from continuum_dyn.effects import Inertia
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.passes.motion_passes import LINEARIZED, MIDPOINT, MOTION
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics import Arm, Bending, Gravity, Payload, Scene, equilibrium
 from statics.core_mass import AT_END, AT_POINT, FRACTIONS
 from statics.effects import Effect
@@ -136,5 +136,5 @@ def test_fall_of_a_loose_core_begins_like_that_of_a_rod_on_a_hinge() -> None:
     scene = Scene(bare(1, 2.0).arm, (Gravity((0.0, -9.81)), Inertia()))
     dynamics = Dynamics(scene)
     start = dynamics.state(np.zeros((1, 1)))
-    found = dynamics.rate(0.0, start, Span(0.0, 1.0, np.zeros((0, 6))))[1]
+    found = dynamics.rate(0.0, start, Interval(0.0, 1.0, np.zeros((0, 6))))[1]
     assert found == pytest.approx(-10 / 3 * 9.81, rel=1e-12)

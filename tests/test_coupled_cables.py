@@ -10,7 +10,7 @@ from whole_cables import WholeCables
 
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics import (
     Arm,
     Bending,
@@ -81,7 +81,7 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
 ) -> None:
     scene = scene_of(kinds, subsegments, moves=True)
     oracle, dynamics = WholeCables(scene, drive_of(kinds)), Dynamics(scene)
-    span = Span(0.0, 1.0, pieces_of(scene, oracle.drive))
+    span = Interval(0.0, 1.0, pieces_of(scene, oracle.drive))
     for seed in range(3):
         q, u = random_state(scene, seed, bend=0.7)
         y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
@@ -101,7 +101,7 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
 @pytest.mark.parametrize("kinds", KINDS)
 def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...]) -> None:
     scene = scene_of(kinds, moves=True)
-    dynamics, span = Dynamics(scene), Span(0.0, 1.0, pieces_of(scene, drive_of(kinds)))
+    dynamics, span = Dynamics(scene), Interval(0.0, 1.0, pieces_of(scene, drive_of(kinds)))
     q, u = random_state(scene, seed=1, bend=0.7)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
     steps = np.concatenate([np.tile([1e-3, 1e-5], len(q)), np.tile([1e-2, 1e-4], len(q)), [1.0, 1.0]])

@@ -12,11 +12,11 @@ from whole_arm import difference_matrix, gradient, random_state, relative_error
 from continuum_dyn.effects import Inertia, LinearDrag, MassDamping, QuadraticDrag, RotaryInertia
 from continuum_dyn.integrators.choice import check
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics import Arm, Bending, Gravity, InputError, Scene
 from statics.effects import Effect
 
-FREE = Span(0.0, 10.0, np.empty((0, 6)))
+FREE = Interval(0.0, 10.0, np.empty((0, 6)))
 ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 THICK, THIN, BY_MASS = LinearDrag(0.03, 2e-6), QuadraticDrag(0.4, 3e-8), MassDamping(12.0)
 NONE = LinearDrag(0.0), QuadraticDrag(0.0), MassDamping(0.0)

@@ -11,7 +11,7 @@ from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.modes import modes_at_rest
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.passes.motion_passes import MOTION
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step, Table
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy, RampStudy
@@ -41,7 +41,7 @@ def test_constant_factor_is_a_constant_load(shaken: Scenario) -> None:
 def rate_of(scenario: Scenario) -> np.ndarray:
     """dy/dt of one state that moves."""
     y = np.append(np.random.default_rng(1).uniform(-1, 1, 8), [0.0, 0.0])
-    (span,) = spans(scenario.profiles, 1.0)
+    (span,) = cut_into_intervals(scenario.profiles, 1.0)
     return Dynamics(scenario.scene).rate(0.3, y, span)
 
 
@@ -78,7 +78,7 @@ def test_small_oscillation_has_the_amplitude_and_phase_of_the_linear_arm(shaken:
     still = with_loads(shaken, load, factors=(Constant(0.0),)).profiles
     pushed = with_loads(shaken, load, factors=(Constant(1.0),)).profiles
     y = dynamics.state(rest.coordinates)
-    (span,), (with_push,) = spans(still, 1.0), spans(pushed, 1.0)
+    (span,), (with_push,) = cut_into_intervals(still, 1.0), cut_into_intervals(pushed, 1.0)
     size = 2 * dynamics.size
     response = np.linalg.solve(
         1j * omega * np.eye(size) - dynamics.jacobian(0.0, y, span)[:size, :size],

@@ -18,7 +18,7 @@ from continuum_dyn.effects import (
 from continuum_dyn.equations.virtual_power import derive_dynamics, partial_velocity
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.passes.motion_passes import MOTION
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics import (
     Arm,
     DiskLoad,
@@ -115,7 +115,7 @@ def rate_of(scene: Scene) -> np.ndarray:
     q, u = random_state(scene, seed=1)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
     pieces = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0]])
-    return Dynamics(scene).rate(0.0, y, Span(0.0, 1.0, pieces))
+    return Dynamics(scene).rate(0.0, y, Interval(0.0, 1.0, pieces))
 
 
 @pytest.mark.parametrize("effect", WITHOUT_EFFECT, ids=lambda effect: effect.name)

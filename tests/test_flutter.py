@@ -15,7 +15,7 @@ from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import Mode, modes, modes_at_rest, still
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import inspector, integrate
@@ -151,7 +151,7 @@ def test_flutter_grows_in_the_motion_at_the_rate_and_frequency_of_its_mode(tmp_p
     dynamics, periods = Dynamics(found.scenario.scene), 8
     samples = np.linspace(0.0, periods / mode.frequency, 200 * periods + 1)
     start = dynamics.state(found.rest.coordinates + 1e-7 * mode.coordinates)
-    (still,) = spans((Constant(1.0),), float(samples[-1]))
+    (still,) = cut_into_intervals((Constant(1.0),), float(samples[-1]))
     monitor = Monitor(inspect=inspector(dynamics))
     moved = integrate(dynamics, [still], samples, start, Solver("chain", rtol=1e-12, atol=1e-15), monitor)
     y = moved.disk_y[:, -1] - found.rest.tip[1]

@@ -15,8 +15,9 @@ from whole_arm import difference_matrix, full_scene, random_state, relative_erro
 from continuum_dyn import load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping
 from continuum_dyn.integrators import choose
+from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.passes.motion_passes import MOTION
-from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import (
@@ -54,7 +55,7 @@ def inextensible(disks: int) -> Scene:
 def accelerations(scene: Scene, q: np.ndarray, u: np.ndarray, inputs: np.ndarray) -> np.ndarray:
     pieces = np.array([[0.0, value, 0.0, 0.0, 0.0, 0.0] for value in inputs]).reshape(-1, 6)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
-    rate = Dynamics(scene).rate(0.0, y, Span(0.0, 1.0, pieces))
+    rate = Dynamics(scene).rate(0.0, y, Interval(0.0, 1.0, pieces))
     return rate[q.size : 2 * q.size].reshape(q.shape)
 
 
@@ -291,5 +292,5 @@ def test_bad_follower_is_named_with_what_is_allowed(tmp_path: Path, old: str, ne
 def test_undamped_motion_under_a_follower_is_never_left_to_the_midpoint_rule() -> None:
     scene = cantilever(2, DiskLoad(2, (0.0, 0.1), follower=True))
     dynamics = Dynamics(scene)
-    start, still = dynamics.state(at_rest(scene).coordinates), spans((), 1e5)[0]
+    start, still = dynamics.state(at_rest(scene).coordinates), cut_into_intervals((), 1e5)[0]
     assert choose(dynamics, start, still, 1e5).method == "explicit"

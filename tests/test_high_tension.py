@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import UPPER, rone2012
-from random_scenes import interpreted
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.scenario.profiles import Constant
@@ -64,7 +63,7 @@ def test_limit_is_that_of_the_closed_form(subsegments: int, extends: bool) -> No
         arm = Arm.preset(
             "rone2012", disks=disks, disk_spacing=0.08 / disks, subsegments=subsegments, cables=(UPPER,)
         )
-        solver = StaticSolver(Scene(arm, loads), interpreted)
+        solver = StaticSolver(Scene(arm, loads))
         limit = limit_on_the_way(solver, np.array([5000.0]), None)
         assert limit is not None
         assert limit.tension[0] == pytest.approx(closed_form(disks, extends), rel=1e-4)

@@ -14,7 +14,7 @@ from continuum_dyn.integrators import ChainSolver, choose
 from continuum_dyn.integrators.runge_kutta import start_records, step_once
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
 from continuum_dyn.scenario.profiles import Sine, Step
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
@@ -75,7 +75,9 @@ def test_tableau_has_its_order_and_is_stiffly_accurate_and_l_stable() -> None:
     assert max(grown) < 1 + 1e-12
 
 
-def fixed_steps(dynamics: Dynamics, span: Span, y: np.ndarray, count: int, tableau: Tableau) -> np.ndarray:
+def fixed_steps(
+    dynamics: Dynamics, span: Interval, y: np.ndarray, count: int, tableau: Tableau
+) -> np.ndarray:
     """The state at the span's end after ``count`` equal steps."""
     kernel, segments, disks = dynamics.motion
     arm = (span.pieces, segments, disks)
@@ -113,7 +115,7 @@ def test_steps_of_fixed_size_have_the_stated_order(
     effects = [effect for effect in plain.effects if effect.name != "extension"]
     hardly_damped = MaterialDamping(retardation_time=1e-9)  # more would be stiff, and stiffness costs order
     scene = Scene(plain.arm, (*effects, Inertia(), RotaryInertia(), hardly_damped))
-    dynamics, (span,) = Dynamics(scene), spans((Sine(1.0, 0.9, 9.0),), 0.04)
+    dynamics, (span,) = Dynamics(scene), cut_into_intervals((Sine(1.0, 0.9, 9.0),), 0.04)
     y = dynamics.state(equilibrium(scene, 0.3).coordinates)
     reference = fixed_steps(dynamics, span, y, 1280, ESDIRK5)
     scale = dynamics.scales()[: 2 * dynamics.size]
@@ -166,7 +168,7 @@ def test_work_is_counted_in_segment_evaluations(step_response: Scenario) -> None
 
 
 def by_solve_ivp(scenario: Scenario, **options: Any) -> Any:
-    dynamics, (span,) = Dynamics(scenario.scene), spans(scenario.profiles, 0.2)
+    dynamics, (span,) = Dynamics(scenario.scene), cut_into_intervals(scenario.profiles, 0.2)
     y = dynamics.state(equilibrium(scenario.scene, scenario.initial_inputs).coordinates)
     asked = {"dynamics": dynamics, "spans": [span], "tolerance": 1e-8, "first_step": 1e-4}
     return solve_ivp(lambda t, y: dynamics.rate(t, y, span), (0.0, 0.2), y, ChainSolver, **asked, **options)
@@ -209,7 +211,7 @@ def test_jump_at_the_start_is_resolved_though_the_axial_modes_are_fast(step_resp
 def chosen(scene: Scene, duration: float = 1.0, exact: bool = False) -> str:
     dynamics = Dynamics(scene)
     start = dynamics.state(equilibrium(scene, 0.0).coordinates)
-    return choose(dynamics, start, spans((Step(0.0, 1.0),), duration)[0], duration, exact).method
+    return choose(dynamics, start, cut_into_intervals((Step(0.0, 1.0),), duration)[0], duration, exact).method
 
 
 def without_extension(disks: int) -> Scene:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from shutil import copytree
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,9 +47,16 @@ def test_changed_numbers_compile_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
     structure = run.scene.structure
     at_rest, in_motion = load(run.scene.at_rest.structure, REST), load(structure, MOTION)
     modules = (newton, search, runge_kutta, observation)
-    functions = [each for module in modules for each in vars(module).values() if hasattr(each, "signatures")]
+    functions: list[Any] = [
+        each for module in modules for each in vars(module).values() if hasattr(each, "signatures")
+    ]
     before = [len(function.signatures) for function in functions]
-    entered = (newton.find_stable, runge_kutta.advance, runge_kutta.interpolate, observation.observe)
+    entered: list[Any] = [
+        newton.find_stable,
+        runge_kutta.advance,
+        runge_kutta.interpolate,
+        observation.observe,
+    ]
     assert all(len(function.signatures) > 0 for function in entered)
     monkeypatch.setattr(loading, "_compiled", None)
     for disks, stiffness in ((4, 2.0), (1, 1.0), (30, 0.5)):

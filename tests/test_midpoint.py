@@ -29,7 +29,7 @@ from continuum_dyn.integrators.midpoint import advance, momentum_passes
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import write_log
-from continuum_dyn.scenario.intervals import Span, spans
+from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
 from continuum_dyn.scenario.profiles import Constant, Profile, Sine, Step
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import MotionStudy
@@ -126,7 +126,7 @@ def test_a_step_is_symplectic() -> None:
 
 
 def test_motion_turned_back_returns_to_its_start() -> None:
-    dynamics, (span,) = Dynamics(stiff()), spans((Constant(1.0),), 0.5)
+    dynamics, (span,) = Dynamics(stiff()), cut_into_intervals((Constant(1.0),), 0.5)
     y = dynamics.state(equilibrium(dynamics.scene, 2.0).coordinates)
     there = by_solve_ivp(dynamics, span, y, step=1e-4).y[:, -1]
     moved = there * np.repeat([1.0, -1.0, 1.0], [4, 4, 2])
@@ -137,7 +137,7 @@ def test_motion_turned_back_returns_to_its_start() -> None:
     assert back[8] == pytest.approx(0.0, abs=1e-12)  # the work comes back, too
 
 
-def by_solve_ivp(dynamics: Dynamics, span: Span, y: np.ndarray, step: float, **options: object) -> Any:
+def by_solve_ivp(dynamics: Dynamics, span: Interval, y: np.ndarray, step: float, **options: object) -> Any:
     asked = {"dynamics": dynamics, "span": span, "step": step}
     return solve_ivp(lambda _t, y: y, (span.start, span.end), y, MidpointSolver, **asked, **options)  # pyright: ignore[reportArgumentType, reportCallIssue]
 
@@ -209,7 +209,7 @@ def test_power_ledger_of_a_driven_arm_closes_to_second_order() -> None:
 
 
 def test_sampling_does_not_change_the_steps() -> None:
-    dynamics, (span,) = Dynamics(stiff()), spans((Step(before=2.0, after=0.0),), 0.2)
+    dynamics, (span,) = Dynamics(stiff()), cut_into_intervals((Step(before=2.0, after=0.0),), 0.2)
     y = dynamics.state(equilibrium(dynamics.scene, 2.0).coordinates)
     plain = by_solve_ivp(dynamics, span, y, step=1e-4, dense_output=True)
     np.testing.assert_allclose(plain.sol(plain.t), plain.y, rtol=1e-9, atol=1e-12)
@@ -260,7 +260,7 @@ def test_fastest_frequency_is_the_same_by_iteration(
     monkeypatch: pytest.MonkeyPatch, disks: int, extension: bool
 ) -> None:
     scene = moving(rone2012(disks=disks), damping=False) if extension else stiff(disks)
-    dynamics, (span,) = Dynamics(scene), spans((Step(before=2.0, after=0.0),), 1.0)
+    dynamics, (span,) = Dynamics(scene), cut_into_intervals((Step(before=2.0, after=0.0),), 1.0)
     y = dynamics.state(equilibrium(scene, 2.0).coordinates)
     dense = fastest_frequency(dynamics, span, y)
     monkeypatch.setattr(modes, "MOST_DENSE", 0)

@@ -19,7 +19,7 @@ from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.modes import MOST_COORDINATES, Mode, RestModes, modes_at_rest, rates_without
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.profiles import Constant
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy
@@ -143,7 +143,7 @@ def swing(found: RestModes, mode: Mode, periods: int) -> tuple[np.ndarray, np.nd
     scene = found.scenario.scene
     dynamics = Dynamics(scene)
     samples = np.linspace(0.0, periods / mode.frequency, 400 * periods + 1)
-    still = spans(tuple(map(Constant, found.rest.tension.tolist())), float(samples[-1]))
+    still = cut_into_intervals(tuple(map(Constant, found.rest.tension.tolist())), float(samples[-1]))
     start = dynamics.state(found.rest.coordinates + 1e-5 * mode.coordinates)
     monitor = Monitor(inspect=inspector(dynamics))
     solver = Solver("chain", rtol=1e-12, atol=1e-15)

@@ -1,6 +1,7 @@
 """Newton's matrices in random scenes: what is eliminated are the differences of the residual."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from hypothesis import assume
@@ -40,7 +41,7 @@ class Unitless:
 
     def residual(self, *state: np.ndarray) -> np.ndarray:
         """At rest in q, or at (q, u, w), all without units; N m."""
-        outward = self.passes.pose if len(state) == 1 else self.passes.motion
+        outward: Any = self.passes.pose if len(state) == 1 else self.passes.motion
         outward(*((part * self.unit).reshape(self.passes.shape) for part in state), self.inputs)
         return self.passes.residual().ravel() * self.unit
 

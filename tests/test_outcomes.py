@@ -13,7 +13,7 @@ from continuum_dyn import Run, Scenario, simulate
 from continuum_dyn.effects import MaterialDamping
 from continuum_dyn.integrators import METHODS, Budget, Monitor
 from continuum_dyn.passes.dynamics import Dynamics, Observation
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from continuum_dyn.scenario.profiles import Constant, Profile, Step
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy, RampStudy, StepResponseStudy
@@ -162,7 +162,7 @@ def test_budget_of_seconds_counts_the_static_path_of_a_motion(monkeypatch: pytes
 def test_forces_that_are_not_numbers_end_as_diverged(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     plain_rate = Dynamics.rate
 
-    def broken(self: Dynamics, t: float, y: np.ndarray, span: Span) -> np.ndarray:
+    def broken(self: Dynamics, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
         return plain_rate(self, t, y, span) * (np.nan if t > 0.01 else 1.0)
 
     monkeypatch.setattr(Dynamics, "rate", broken)

@@ -18,7 +18,7 @@ from continuum_dyn.integrators.midpoint import momentum_passes
 from continuum_dyn.passes.dynamics import LEDGER, Dynamics
 from continuum_dyn.passes.motion_passes import MOTION as MOVING
 from continuum_dyn.passes.observation import observe
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from continuum_dyn.scenario.profiles import Step
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy, StepResponseStudy
@@ -51,7 +51,7 @@ class Kernel:
     """A scene's equations of motion under constant tensions."""
 
     def __init__(self, scene: Scene) -> None:
-        self.dynamics, self.span = Dynamics(scene), Span(0.0, 1.0, PIECES[: scene.cables])
+        self.dynamics, self.span = Dynamics(scene), Interval(0.0, 1.0, PIECES[: scene.cables])
 
     def rate(self, y: np.ndarray) -> np.ndarray:
         """dy/dt."""

@@ -13,7 +13,7 @@ import numpy as np
 from continuum_dyn import load_scenario
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation.integration import inspector, integrate, warm_up
@@ -67,7 +67,7 @@ class Case:
         self.retardation: float = getattr(effects["material_damping"], "retardation_time")  # noqa: B009
         self.duration = duration
         self.samples = np.linspace(0.0, duration, study.samples)
-        self.stretches = spans(self.scenario.profiles, self.duration)
+        self.stretches = cut_into_intervals(self.scenario.profiles, self.duration)
         self.tension = float(self.stretches[-1].inputs(self.samples[-1:])[0, 0])
         self.dynamics = Dynamics(self.scenario.scene)
         self.rest = equilibrium(self.scenario.scene, self.scenario.initial_inputs).coordinates

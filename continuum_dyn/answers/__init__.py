@@ -1,1 +1,1 @@
-"""What a log answers: how its motion settles, how far it lags behind its static path."""
+"""Logs come in, their figures go out: settling, ring-down, the lag and the loop of a ramp."""

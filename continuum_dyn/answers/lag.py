@@ -1,18 +1,18 @@
-"""How far a slow motion lags behind its static path."""
+"""The lag of a slow motion behind its static path."""
 
 import numpy as np
 
 
 def gap(tip: np.ndarray, rest: np.ndarray) -> np.ndarray:
-    """Distance (m) of the tip from where it would rest, both of shape (samples, 2), m."""
+    """Distance (m) of the tip from its static path, both of shape (samples, 2), m."""
     return np.hypot(*(tip - rest).T)
 
 
 def delay(time: np.ndarray, tip: np.ndarray, rest: np.ndarray) -> float | None:
-    """The time (s) by which the tip is late on its static path; None if the path stays where it is.
+    """The time (s) by which the tip is late on its static path; None if the path does not move.
 
-    Least squares of tip(t) = rest(t) - delay rest'(t): to first order rest(t - delay). What the tip swings
-    about that averages out.
+    Least squares of tip(t) = rest(t) - delay rest'(t): to first order rest(t - delay). Swings
+    about that average out.
     """
     velocity = np.diff(rest, axis=0) / np.diff(time)[:, None]
     ahead = 0.5 * ((tip - rest)[1:] + (tip - rest)[:-1])
@@ -21,9 +21,9 @@ def delay(time: np.ndarray, tip: np.ndarray, rest: np.ndarray) -> float | None:
 
 
 def rate_within(error: float, rates: np.ndarray, lags: np.ndarray) -> float | None:
-    """The rate up to which the lag stays below ``error`` (m), by the lags at some rates, or None.
+    """The rate up to which the lag stays below ``error`` (m), from the lags at some rates, or None.
 
-    Between two rates the lag is a power of the rate. Beyond the least and the most it is not known.
+    Between two rates the lag is a power of the rate. Outside their range it is not known.
     """
     order = np.argsort(rates)
     rates, lags = rates[order], lags[order]

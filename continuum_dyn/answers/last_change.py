@@ -1,18 +1,18 @@
-"""When what drives a motion changes for the last time."""
+"""The last change of a motion's inputs."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from continuum_dyn.scenario.intervals import SAME, Span, spans
+from continuum_dyn.scenario.intervals import ROUNDING, Interval, cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import InputError
 
 
 class LastChange(NamedTuple):
-    """Times (s) at which the inputs begin to change for the last time, and from which on they stay.
+    """The time (s) at which the inputs begin to change for the last time, and the time at which they stop.
 
-    The same for a step. From ``end`` on the motion is free.
+    Both are the same for a step. From ``end`` on the motion is free.
     """
 
     begin: float
@@ -26,9 +26,9 @@ def last_change(scenario: Scenario, until: float) -> LastChange:
     """
     drives = (*scenario.drives, *scenario.load_factors, *scenario.base_motion)
     profiles = [profile for profile in drives if not isinstance(profile, tuple)]
-    stretches = spans(profiles, until)
+    intervals = cut_into_intervals(profiles, until)
     before = np.array([profile.initial for profile in profiles])
-    changes = list(_changes(before, stretches))
+    changes = list(_changes(before, intervals))
     if not changes:
         raise InputError(f"nothing that drives this motion changes before {until:g} s.")
     if changes[-1].end >= until:
@@ -39,17 +39,17 @@ def last_change(scenario: Scenario, until: float) -> LastChange:
     return changes[-1]
 
 
-def _changes(before: np.ndarray, stretches: list[Span]) -> list[LastChange]:
-    """Jumps, and stretches of continuous change."""
+def _changes(before: np.ndarray, intervals: list[Interval]) -> list[LastChange]:
+    """Jumps, and runs of intervals with continuous change."""
     found: list[LastChange] = []
-    goes_on = False
-    for span in stretches:
-        first, last = span.inputs(np.array([span.start, span.end]))
-        if np.any(np.abs(first - before) > SAME * (np.abs(first) + np.abs(before))):
-            found.append(LastChange(span.start, span.start))
-            goes_on = False
-        if changing := bool(span.pieces[:, 2:4].any()):
-            begin = found.pop().begin if goes_on else span.start
-            found.append(LastChange(begin, span.end))
-        goes_on, before = changing, last
+    continues = False
+    for interval in intervals:
+        first, last = interval.inputs(np.array([interval.start, interval.end]))
+        if np.any(np.abs(first - before) > ROUNDING * (np.abs(first) + np.abs(before))):
+            found.append(LastChange(interval.start, interval.start))
+            continues = False
+        if changing := bool(interval.pieces[:, 2:4].any()):
+            begin = found.pop().begin if continues else interval.start
+            found.append(LastChange(begin, interval.end))
+        continues, before = changing, last
     return found

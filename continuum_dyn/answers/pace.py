@@ -1,4 +1,4 @@
-"""The same scenario driven faster or slower."""
+"""Scenarios driven faster or slower."""
 
 from dataclasses import replace
 from typing import Any
@@ -8,7 +8,7 @@ from continuum_dyn.scenario.scenario import Scenario
 
 
 def at_pace(scenario: Scenario, factor: float) -> Scenario:
-    """The scenario with all that drives it, and its duration, that many times as fast.
+    """The scenario with all its inputs, and its duration, ``factor`` times as fast.
 
     Raises ``InputError`` for a study without motion.
     """

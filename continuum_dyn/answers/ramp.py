@@ -1,4 +1,4 @@
-"""What a ramp's log says: how far the motion lags behind the static path, and the loop there and back."""
+"""Figures of a ramp's log: the lag of the motion behind the static path, and the hysteresis loop."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -7,7 +7,7 @@ import numpy as np
 
 from continuum_dyn.answers.lag import delay, gap
 from continuum_dyn.answers.loops import Loop, widest_gap, widest_loop, work_around
-from continuum_dyn.answers.turnings import monotonic_ways
+from continuum_dyn.answers.turnings import monotonic_branches
 from continuum_dyn.record import Log
 from statics.errors import InputError
 
@@ -15,16 +15,16 @@ FIGURES = (
     *("ramp_rate", "tip_lag", "delay", "quasistatic_error", "quasistatic_rate", "measured_quasistatic_rate"),
     *("hysteresis_area", "tip_hysteresis", "static_hysteresis_area", "static_tip_hysteresis"),
 )
-"""Names of what is found, in the glossary."""
-LEAST_WAY = 1e-2
-"""Part of a drive's range below which going up or down is no way of a ramp."""
+"""Glossary names of the figures."""
+SMALLEST_BRANCH = 1e-2
+"""Smallest range of a branch, in parts of the drive's range."""
 JUMP = 0.5
-"""Part of a way that is passed from one sample to the next where the drive jumps."""
+"""Largest change from sample to sample that is not a jump, in parts of a branch."""
 
 
 @dataclass(frozen=True)
 class Drive:
-    """What is ramped: a tension, a cable drawn in, or a load factor, at each row; ``of`` says whose."""
+    """The ramped tension, cable displacement or load factor at each row; ``of`` names the cable or load."""
 
     quantity: str
     of: str
@@ -37,8 +37,8 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Path:
-    """The tip along a ramp, shape (rows, 2), m, and what the cables do, shape (rows, cables), N and m."""
+class TipPath:
+    """The path of the tip, shape (rows, 2), m, and of the cables, shape (rows, cables), N and m."""
 
     tip: np.ndarray
     tension: np.ndarray
@@ -46,8 +46,8 @@ class Path:
 
 
 @dataclass(frozen=True)
-class WayLag:
-    """The lag on one way of the drive: its times and largest rate, the largest lag (m), the delay (s)."""
+class BranchLag:
+    """The lag on one branch of the drive: its times and largest rate, the largest lag (m), the delay (s)."""
 
     start: float
     end: float
@@ -65,20 +65,20 @@ class RateLag(NamedTuple):
 
 @dataclass(frozen=True)
 class RampAnswers:
-    """What a ramp's log says.
+    """Figures of a ramp's log.
 
     ``static`` is the path of equilibria; ``motion`` the path of the motion at the same rows, with its
-    ``time`` (s), its tip's ``gaps`` (m) from the static one and its ``lags`` on each way, None and empty
-    where nothing moves. ``loop`` is the widest one, there and back. Of ``figures``, by glossary name, in SI
-    units, those that are None have their reason in ``missing``. ``measured`` is what other rates show.
+    ``time`` (s), its tip's ``gaps`` (m) from the static one and its ``lags`` on each branch, None and
+    empty if nothing moves. ``loop`` is the widest one. ``figures`` are in SI units, by glossary name; for
+    those that are None ``missing`` has the reason. ``measured`` has the lags at other rates.
     """
 
     drive: Drive
-    static: Path
-    motion: Path | None
+    static: TipPath
+    motion: TipPath | None
     time: np.ndarray | None
     gaps: np.ndarray | None
-    lags: tuple[WayLag, ...]
+    lags: tuple[BranchLag, ...]
     loop: Loop | None
     figures: dict[str, float | None]
     missing: dict[str, str]
@@ -86,22 +86,22 @@ class RampAnswers:
 
 
 def ramp_answers(log: Log, error: float) -> RampAnswers:
-    """What the log of a ramp says: of equilibria, or of a motion with its static path.
+    """Compute the figures of a ramp of equilibria, or of a motion with its static path.
 
-    ``quasistatic_rate`` is the rate at which the lag comes to ``error`` (m), if it is proportional to the
-    rate. Raises ``InputError`` for a log without a static path, and where nothing is ramped.
+    ``quasistatic_rate`` is the rate at which the lag reaches ``error`` (m), if it is proportional to the
+    rate. Raises ``InputError`` if the log has no static path, or if nothing is ramped.
     """
     rows = _rows(log)
     drive, static = _drive(log, rows), _path(log.equilibria, rows)
-    ways = monotonic_ways(drive.values, LEAST_WAY * float(np.ptp(drive.values)))
+    branches = monotonic_branches(drive.values, SMALLEST_BRANCH * float(np.ptp(drive.values)))
     motion = time = gaps = None
-    lags: tuple[WayLag, ...] = ()
+    lags: tuple[BranchLag, ...] = ()
     if log.trajectory:
         samples = log.equilibria["point"][rows] - 1
         motion, time = _path(log.trajectory, samples), log.trajectory["time"][samples]
         gaps = gap(motion.tip, static.tip)
-        lags = tuple(_lag(drive, static, motion, time, way) for way in ways)
-    loop = None if _unstable(log, rows) else widest_loop(drive.values, ways)
+        lags = tuple(_lag(drive, static, motion, time, branch) for branch in branches)
+    loop = None if _unstable(log, rows) else widest_loop(drive.values, branches)
     figures = dict.fromkeys(FIGURES) | {"quasistatic_error": error}
     figures |= _lag_figures(lags, gaps, time, static, motion, error) | _loop_figures(
         drive, loop, static, motion
@@ -111,7 +111,7 @@ def ramp_answers(log: Log, error: float) -> RampAnswers:
 
 
 def _rows(log: Log) -> np.ndarray:
-    """Rows of the equilibria that were found, one for each point: without those that a search left."""
+    """Rows of the equilibria that were found, one for each point, without those that a search has left."""
     points = log.equilibria.get("point", np.empty(0, dtype=int))
     rows = np.flatnonzero(np.append(np.diff(points) != 0, True)) if points.size else points
     if log.trajectory and len(rows) <= 2:
@@ -138,13 +138,13 @@ def _drive(log: Log, rows: np.ndarray) -> Drive:
     raise InputError(f"{log.path}: no tension and no load factor changes in this log; nothing is ramped.")
 
 
-def _path(columns: Any, rows: np.ndarray) -> Path:
+def _path(columns: Any, rows: np.ndarray) -> TipPath:
     tip = np.column_stack([columns["disk_x"][rows, -1], columns["disk_y"][rows, -1]])
-    return Path(tip, columns["tension"][rows], columns["cable_displacement"][rows])
+    return TipPath(tip, columns["tension"][rows], columns["cable_displacement"][rows])
 
 
-def _lag(drive: Drive, static: Path, motion: Path, time: np.ndarray, way: slice) -> WayLag:
-    values, at = drive.values[way], time[way]
+def _lag(drive: Drive, static: TipPath, motion: TipPath, time: np.ndarray, branch: slice) -> BranchLag:
+    values, at = drive.values[branch], time[branch]
     steps = np.abs(np.diff(values))
     if steps.max() > JUMP * np.ptp(values):
         raise InputError(
@@ -152,32 +152,32 @@ def _lag(drive: Drive, static: Path, motion: Path, time: np.ndarray, way: slice)
             "ramp changes it gradually. Ask settle about steps."
         )
     rate = float(np.max(steps / np.diff(at)))
-    late = delay(at, motion.tip[way], static.tip[way])
-    lag = float(gap(motion.tip[way], static.tip[way]).max())
-    return WayLag(float(at[0]), float(at[-1]), rate, lag, late)
+    late = delay(at, motion.tip[branch], static.tip[branch])
+    lag = float(gap(motion.tip[branch], static.tip[branch]).max())
+    return BranchLag(float(at[0]), float(at[-1]), rate, lag, late)
 
 
 def _lag_figures(
-    lags: tuple[WayLag, ...],
+    lags: tuple[BranchLag, ...],
     gaps: np.ndarray | None,
     time: np.ndarray | None,
-    static: Path,
-    motion: Path | None,
+    static: TipPath,
+    motion: TipPath | None,
     error: float,
 ) -> dict[str, float | None]:
-    """Those of the motion against its static path."""
+    """Figures of the motion against its static path."""
     if motion is None or gaps is None or time is None:
         return {}
-    rate, lag = max(way.ramp_rate for way in lags), float(gaps.max())
+    rate, lag = max(branch.ramp_rate for branch in lags), float(gaps.max())
     late = delay(time, motion.tip, static.tip)
     within = error * rate / lag if lag > 0.0 else None
     return {"ramp_rate": rate, "tip_lag": lag, "delay": late, "quasistatic_rate": within}
 
 
 def _loop_figures(
-    drive: Drive, loop: Loop | None, static: Path, motion: Path | None
+    drive: Drive, loop: Loop | None, static: TipPath, motion: TipPath | None
 ) -> dict[str, float | None]:
-    """Those of the loop, of the motion and of the static path."""
+    """Figures of the loops of the motion and of the static path."""
     figures: dict[str, float | None] = {}
     for path, kind in ((motion, ""), (static, "static_")):
         if loop is not None and path is not None:

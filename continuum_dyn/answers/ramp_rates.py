@@ -14,15 +14,15 @@ from continuum_dyn.simulation import simulate
 from statics.errors import InputError
 
 PACES = (0.25, 0.5, 1.0, 2.0, 4.0)
-"""Times the rate at which a lag that is proportional to the rate would come to the error."""
+"""Rates to run at, over the rate at which a proportional lag would reach the error."""
 
 
-def measured(
+def measure_at_other_rates(
     found: RampAnswers, scenario: Scenario, progress: Callable[[str], None] = lambda _: None
 ) -> RampAnswers:
-    """What a ramp's log says, with its scenario's lags about ``quasistatic_rate``, and that rate by them.
+    """Add to a ramp's figures its lags at rates about ``quasistatic_rate``, and that rate from them.
 
-    Raises ``InputError`` for a log without motion, and where a run does not come to its end.
+    Raises ``InputError`` if the log has no motion, or if a run does not reach its end.
     """
     own, about, error = (found.figures[n] for n in ("ramp_rate", "quasistatic_rate", "quasistatic_error"))
     if own is None or about is None or error is None:
@@ -45,7 +45,7 @@ def _lag_at(scenario: Scenario, own: float, rate: float, progress: Callable[[str
     run = simulate(replace(faster, study=replace(study, samples=samples, static_path=True)))
     found = [sample for sample, point in enumerate(run.static_path) if point.found]
     if run.tips is None or not found:
-        told = run.message or "no equilibrium of its static path was found"
-        raise InputError(f"run at {pace:.3g} times its pace the ramp ends as {run.outcome}: {told}.")
+        reason = run.message or "no equilibrium of its static path was found"
+        raise InputError(f"run at {pace:.3g} times its pace the ramp ends as {run.outcome}: {reason}.")
     rests = np.array([run.static_path[sample].tip[:2] for sample in found])
     return RateLag(rate, float(gap(run.tips[found], rests).max()))

@@ -9,15 +9,15 @@ from continuum_dyn.answers.turnings import turnings
 from statics.errors import InputError
 
 LEAST_SWING = 1e-3
-"""Part of the signal's range below which turning back is no swing."""
+"""Smallest swing, in parts of the signal's range."""
 FEWEST_TURNINGS = 3
-"""Turning points that a fit needs: one period."""
+"""Smallest number of turning points for a fit: one period."""
 MOST_TURNINGS = 200
-"""Turning points that a fit takes into account."""
+"""Largest number of turning points that a fit uses."""
 FEWEST_SAMPLES = 4
-"""Samples between two turning points, below which they are too far apart."""
+"""Smallest number of samples from one turning point to the next."""
 WORST_MISFIT = 0.5
-"""Misfit above which what was fitted is no damped sinusoid."""
+"""Largest misfit of a damped sinusoid."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class RingDown:
     """rest + amplitude exp(-decay_rate (t - start)) cos(turning (t - start) + phase) from ``start`` (s) on.
 
     ``decay_rate`` in 1/s, ``turning`` in rad/s, ``rest`` and ``amplitude`` in the signal's unit; ``misfit``
-    is the root mean square of what the fit leaves, over that of the signal about its mean.
+    is the root mean square of the residual, over that of the signal about its mean.
     """
 
     start: float
@@ -57,11 +57,11 @@ class RingDown:
 
 
 def fit_ring_down(time: np.ndarray, value: np.ndarray) -> RingDown:
-    """The damped sinusoid about a rest that is nearest to a free motion, from its first turning point on.
+    """Fit a damped sinusoid about a rest to a free motion, from its first turning point on.
 
     Least squares in decay rate and angular frequency; for each pair of them rest, amplitude and phase follow
     from linear equations. It starts from the spacing of the turning points and the slope of their swings.
-    Raises ``InputError`` that says why there is no such thing: no swing, too few, or too few samples.
+    Raises ``InputError`` with the reason if there is none: no swing, too few of them, or too few samples.
     """
     turns = turnings(value, LEAST_SWING * float(np.ptp(value)))[:MOST_TURNINGS]
     _check(turns)
@@ -69,7 +69,7 @@ def fit_ring_down(time: np.ndarray, value: np.ndarray) -> RingDown:
     since, signal = time[turns[0] : last] - time[turns[0]], value[turns[0] : last]
 
     def parts(rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What it is made of at all times, and how much of each."""
+        """The basis at all times, and its coefficients by linear least squares."""
         decay = np.exp(-rates[0] * since)
         waves = (np.ones_like(since), decay * np.cos(rates[1] * since), decay * np.sin(rates[1] * since))
         basis = np.column_stack(waves)
@@ -106,7 +106,7 @@ def _check(turns: np.ndarray) -> None:
 
 
 def _start(time: np.ndarray, value: np.ndarray) -> np.ndarray:
-    """Decay rate (1/s) and angular frequency (rad/s) by the turning points alone."""
+    """Decay rate (1/s) and angular frequency (rad/s) from the turning points alone."""
     swings, middle = np.abs(np.diff(value)), 0.5 * (time[1:] + time[:-1])
     decay = -np.polyfit(middle, np.log(swings), 1)[0]
     return np.array([decay, np.pi / np.median(np.diff(time))])

@@ -1,4 +1,4 @@
-"""How the motion of a log settles: its step figures, its ring-down, and the modes it should swing in."""
+"""Settling of a log's motion: its step figures, its ring-down, and the modes it should swing in."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,29 +14,29 @@ from continuum_dyn.modes import Mode, check, modes, still
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import InputError
 
 BANDS = {"settling_time_5": 0.05, "settling_time_2": 0.02, "settling_time_1": 0.01}
-"""Parts of the tip's travel within which it has settled, by the name of the time that this takes."""
+"""Half-width of the band in which the tip has settled, in parts of its travel, by glossary name."""
 STEP_FIGURES = ("rise_time", "overshoot", *BANDS)
 FIGURES = (
     *("travel", *STEP_FIGURES, "frequency", "damping_ratio", "ring_down_misfit"),
     *("mode_frequency", "mode_damping_ratio", "static_gap"),
 )
-"""Names of what is found, in the glossary."""
+"""Glossary names of the figures."""
 NO_TRAVEL = 1e-9
-"""Part of the arm's length below which its tip does not travel."""
+"""Largest travel that counts as none, in arm lengths."""
 
 
 @dataclass(frozen=True)
 class Settling:
-    """How a tip comes to rest after the last change of what drives the arm.
+    """Settling of the tip after the last change of the inputs.
 
-    ``along`` is the tip's position (m) at each ``time`` (s), along the straight way from where it was when
-    this change began (0) to its last equilibrium (``travel``); what it does across that way is left out. Of
-    ``figures``, by glossary name and in SI units, those that are None have their reason in ``missing``.
+    ``along`` is the tip's position (m) at each ``time`` (s), along the straight line from its position when
+    this change began (0) to its last equilibrium (``travel``); motion across that line is left out.
+    ``figures`` are in SI units, by glossary name; for those that are None ``missing`` has the reason.
     """
 
     time: np.ndarray
@@ -50,21 +50,21 @@ class Settling:
 
 
 def settling(log: Log) -> Settling:
-    """How the motion of a log settles.
+    """Compute how the motion of a log settles.
 
     Times count from the beginning of the last change of the inputs; overshoot and bands are parts of the
-    travel. Frequency and damping ratio are fitted to what follows its end, and belong beside those of the
-    mode of the last equilibrium whose frequency is nearest. Raises ``InputError`` for a log without a motion
-    to an equilibrium, or whose tip does not travel.
+    travel. Frequency and damping ratio are fitted to the free motion after its end, and compare with the
+    mode of the last equilibrium whose frequency is nearest. Raises ``InputError`` if the log has no motion
+    to an equilibrium, or if its tip does not travel.
     """
     scenario, time = logged_scenario(log), _motion_times(log)
     change = last_change(scenario, float(time[-1]))
     along, travel = _along(log, change.begin)
     missing: dict[str, str] = {}
-    found = _or_why(missing, "mode", lambda: _modes_at_the_end(log, scenario)) or ()
-    ring_down = _or_why(missing, "ring_down", lambda: _ring_down(time, along, change, found))
+    found = _try(missing, "mode", lambda: _modes_at_the_end(log, scenario)) or ()
+    ring_down = _try(missing, "ring_down", lambda: _ring_down(time, along, change, found))
     mode = _nearest(found, ring_down)
-    steps = _or_why(missing, "step", lambda: _step_figures(time, along / travel, change, found, ring_down))
+    steps = _try(missing, "step", lambda: _step_figures(time, along / travel, change, found, ring_down))
     figures = {
         "travel": travel,
         **(steps or dict.fromkeys(STEP_FIGURES)),
@@ -92,17 +92,17 @@ def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
     motion, rests = log.trajectory, log.equilibria
     tip = np.column_stack([motion["disk_x"][:, -1], motion["disk_y"][:, -1]])
     start = CubicSpline(motion["time"], tip)(begin)
-    way = np.array([rests["disk_x"][-1, -1], rests["disk_y"][-1, -1]]) - start
-    travel = float(np.hypot(*way))
+    line = np.array([rests["disk_x"][-1, -1], rests["disk_y"][-1, -1]]) - start
+    travel = float(np.hypot(*line))
     if travel < NO_TRAVEL * log.arm["disks"] * log.arm["disk_spacing"]:
         raise InputError(f"{log.path}: the tip is where it will rest from the start; it does not travel.")
-    return (tip - start) @ way / travel, travel
+    return (tip - start) @ line / travel, travel
 
 
-def _or_why(missing: dict[str, str], name: str, found: Callable[[], Any]) -> Any:
-    """What is found, or None with the reason kept under that name."""
+def _try(missing: dict[str, str], name: str, compute: Callable[[], Any]) -> Any:
+    """The result of ``compute``; if it raises ``InputError``, None, and the reason is kept under ``name``."""
     try:
-        return found()
+        return compute()
     except InputError as error:
         missing[name] = str(error)
         return None
@@ -132,7 +132,7 @@ def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
     check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
     end = scenario.require_motion("only a motion settles").duration
-    inputs = spans(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
+    inputs = cut_into_intervals(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
     rest = [log.equilibria[name][-1] for name in ("bend_angle", "elongation") if name in log.equilibria]
     with np.errstate(all="ignore"):
         return modes(dynamics, dynamics.state(np.column_stack(rest)), still(inputs))
@@ -145,7 +145,7 @@ def _step_figures(
     found: tuple[Mode, ...],
     ring_down: RingDown | None,
 ) -> dict[str, float | None]:
-    """Those of the part of the travel that is done. Raises ``InputError`` if samples miss a step's swings."""
+    """Rise time, overshoot and settling times. Raises ``InputError`` if samples miss a step's swings."""
     if change.end - change.begin < _longest_swing(found):
         _check_samples(time, found)
     curve, begin = CubicSpline(time, part), change.begin
@@ -155,7 +155,7 @@ def _step_figures(
 
 
 def _ring_down(time: np.ndarray, along: np.ndarray, change: LastChange, found: tuple[Mode, ...]) -> RingDown:
-    """The fit to what follows the last change, if its samples show the lowest mode's swings."""
+    """Fit the free motion after the last change, if its samples show the lowest mode's swings."""
     _check_samples(time, found)
     free = time >= change.end
     return fit_ring_down(time[free], along[free])
@@ -167,7 +167,7 @@ def _longest_swing(found: tuple[Mode, ...]) -> float:
 
 
 def _check_samples(time: np.ndarray, found: tuple[Mode, ...]) -> None:
-    """Raises ``InputError`` for samples too far apart to show the lowest mode: they would show another."""
+    """Raise ``InputError`` if samples are too far apart to show the lowest mode: they would show another."""
     spacing, swing = float(np.median(np.diff(time))), _longest_swing(found)
     if 0.0 < swing < FEWEST_SAMPLES * spacing:
         raise InputError(

@@ -1,7 +1,7 @@
-"""What control engineers read off a step response: rise time, overshoot, settling times.
+"""Rise time, overshoot and settling times of a step response.
 
-The signal is the part of its travel that a motion has done: 0 where it starts, 1 where it is to rest. Between
-samples it is the cubic spline through them, so that these times are finer than the samples.
+The signal is the part of its travel that a motion has done: 0 at its start, 1 at its last equilibrium.
+Between samples it is the cubic spline through them, so that these times are finer than the samples.
 """
 
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 RISES_FROM, RISES_TO = 0.1, 0.9
-"""Parts of the travel between which the rise time is taken."""
+"""Levels between which the rise time is taken, in parts of the travel."""
 
 
 def rise_time(part: CubicSpline, begin: float) -> float | None:
@@ -21,7 +21,7 @@ def rise_time(part: CubicSpline, begin: float) -> float | None:
 
 
 def overshoot(part: CubicSpline, begin: float) -> float:
-    """How far it goes beyond its rest at most, over the travel; 0 if it does not."""
+    """Largest excursion beyond the last equilibrium, over the travel; 0 if there is none."""
     return max(0.0, float(part(_nodes(part, begin)).max()) - 1.0)
 
 
@@ -36,7 +36,7 @@ def settling_time(part: CubicSpline, band: float, begin: float, stays: float = 0
         return 0.0
     if outside[-1] + 1 == nodes.size:
         return None
-    comes = _between(lambda t: abs(float(part(t)) - 1.0) - band, nodes, outside[-1])
+    comes = _root_between(lambda t: abs(float(part(t)) - 1.0) - band, nodes, outside[-1])
     return None if nodes[-1] - comes < stays else comes - begin
 
 
@@ -48,14 +48,14 @@ def _nodes(part: CubicSpline, begin: float) -> np.ndarray:
 
 
 def _first_at(part: CubicSpline, level: float, begin: float) -> float | None:
-    """Time (s) at which it first comes to that level, from ``begin`` on."""
+    """Time (s) at which the signal first reaches that level, from ``begin`` on."""
     nodes = _nodes(part, begin)
     there = np.flatnonzero(part(nodes) >= level)
     if not there.size:
         return None
-    return begin if there[0] == 0 else _between(lambda t: float(part(t)) - level, nodes, there[0] - 1)
+    return begin if there[0] == 0 else _root_between(lambda t: float(part(t)) - level, nodes, there[0] - 1)
 
 
-def _between(function: Callable[[float], float], nodes: np.ndarray, number: int) -> float:
-    """Where it is zero between that node and the next one."""
+def _root_between(function: Callable[[float], float], nodes: np.ndarray, number: int) -> float:
+    """The root of a function between that node and the next one."""
     return float(brentq(function, nodes[number], nodes[number + 1]))

@@ -1,24 +1,24 @@
-"""Where a signal turns back, and the monotonic ways between."""
+"""Turning points of a signal, and the monotonic branches between them."""
 
 from itertools import pairwise
 
 import numpy as np
 
-SAME = 1e-9
-"""Part of a signal's range within which it stays where it is."""
+CONSTANT = 1e-9
+"""Largest change of a signal that counts as none, in parts of its range."""
 
 
 def turnings(values: np.ndarray, least: float) -> np.ndarray:
-    """Numbers of the samples from which a signal turns back by more than ``least``, in its own unit."""
+    """Indices of the samples from which a signal turns back by more than ``least``, in its own unit."""
     found: list[int] = []
-    way, best = 0, 0
+    direction, best = 0, 0
     for sample in _extremes(values):
-        if way * (values[sample] - values[best]) > 0.0:
+        if direction * (values[sample] - values[best]) > 0.0:
             best = sample
         elif abs(values[sample] - values[best]) > least:
-            if way:
+            if direction:
                 found.append(best)
-            way, best = int(np.sign(values[sample] - values[best])), sample
+            direction, best = int(np.sign(values[sample] - values[best])), sample
     return np.array(found, dtype=int)
 
 
@@ -29,20 +29,20 @@ def _extremes(values: np.ndarray) -> list[int]:
     return [*(moves[:-1][turns[1:] != turns[:-1]] + 1).tolist(), len(values) - 1]
 
 
-def monotonic_ways(values: np.ndarray, least: float) -> list[slice]:
-    """The stretches from one turning to the next, without those where the signal stays as it is.
+def monotonic_branches(values: np.ndarray, least: float) -> list[slice]:
+    """Branches from one turning point to the next, without the parts where the signal is constant.
 
-    Each goes through more than ``least``; both of its ends are in it.
+    Each changes by more than ``least``, and includes both of its ends.
     """
     edges = [0, *turnings(values, least).tolist(), len(values) - 1]
-    ways = [_moving(values, start, end) for start, end in pairwise(edges)]
-    return [way for way in ways if abs(values[way.stop - 1] - values[way.start]) > least]
+    branches = [_moving(values, start, end) for start, end in pairwise(edges)]
+    return [branch for branch in branches if abs(values[branch.stop - 1] - values[branch.start]) > least]
 
 
 def _moving(values: np.ndarray, start: int, end: int) -> slice:
-    """From where it leaves its first value to where it comes to its last one."""
+    """The part of a branch from its first change to its last one."""
     part = values[start : end + 1]
-    near = SAME * np.ptp(part)
+    near = CONSTANT * np.ptp(part)
     leaves = np.flatnonzero(np.abs(part - part[0]) > near)
     comes = np.flatnonzero(np.abs(part - part[-1]) > near)
     if not leaves.size:

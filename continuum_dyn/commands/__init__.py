@@ -1,1 +1,1 @@
-"""The commands, one file each. They import what is heavy only when they are called."""
+"""Command lines come in, answers are printed; large packages are imported only when needed."""

@@ -151,16 +151,14 @@ def _print_letters(used: set[str]) -> None:
     typer.echo("\nLetters")
     for name, quantity in QUANTITIES.items():
         if name in used and quantity.letter != name:
-            typer.echo(_wrapped(f"{quantity.letter:<4} {name} ({quantity.unit}): {quantity.meaning}"))
-    typer.echo(_wrapped("h    phi / 2"))
+            typer.echo(_wrap(f"{quantity.letter:<4} {name} ({quantity.unit}): {quantity.meaning}"))
+    typer.echo(_wrap("h    phi / 2"))
     typer.echo(
-        _wrapped(
-            "sigma_n(h) = j_n(h) / h^n, spherical Bessel functions: sigma_-1 = cos h, sigma_0 = sin(h)/h"
-        )
+        _wrap("sigma_n(h) = j_n(h) / h^n, spherical Bessel functions: sigma_-1 = cos h, sigma_0 = sin(h)/h")
     )
 
 
-def _wrapped(text: str) -> str:
+def _wrap(text: str) -> str:
     return fill(text, 79, initial_indent="  ", subsequent_indent=" " * 7)
 
 
@@ -173,14 +171,14 @@ def _letter(name: str) -> str:
     return QUANTITIES[name].letter if name in QUANTITIES else name
 
 
-def _lettered(value: Any, used: set[str], sigma: str) -> Any:
+def _use_letters(value: Any, used: set[str], sigma: str) -> Any:
     """The expression in the customary letters; ``sigma`` is the pattern for sigma_n(h), h = phi / 2."""
     import sympy as sp
 
     from statics.derivation.sigma import Sigma
 
     if isinstance(value, tuple):
-        return tuple(_lettered(part, used, sigma) for part in value)
+        return tuple(_use_letters(part, used, sigma) for part in value)
     value = sp.sympify(value)
     used |= {s.name if s.name in QUANTITIES else s.name.rpartition("_")[0] for s in value.free_symbols}
     calls = {call: sp.Symbol(sigma.format(n=call.args[0])) for call in value.atoms(Sigma)}
@@ -191,7 +189,7 @@ def _lettered(value: Any, used: set[str], sigma: str) -> Any:
 def _text(name: str, value: Any, used: set[str]) -> str:
     from sympy import sstr
 
-    expression = sstr(_lettered(value, used, "sigma_{n}(h)"))
+    expression = sstr(_use_letters(value, used, "sigma_{n}(h)"))
     return fill(f"{name} = {expression}", 79, initial_indent="    ", subsequent_indent=" " * 8)
 
 
@@ -199,5 +197,5 @@ def _latex(name: str, value: Any, used: set[str]) -> str:
     import sympy as sp
 
     rates = {sp.Symbol("phi'"): r"\dot{\phi}", sp.Symbol("e'"): r"\dot{e}"}
-    expression = sp.latex(_lettered(value, used, r"\sigma_{{{n}}}(h)"), symbol_names=rates)
+    expression = sp.latex(_use_letters(value, used, r"\sigma_{{{n}}}(h)"), symbol_names=rates)
     return f"    {sp.latex(sp.Symbol(name))} = {expression}"

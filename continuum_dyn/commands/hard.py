@@ -55,10 +55,10 @@ def hard(
     cases = [case for path in paths for case in load_cases(path)]
     others: Any = METHODS if every else ()
 
-    def all_judged(told: Callable[[str], None]) -> "list[Verdict]":
-        return [verdict for case in cases for verdict in judge(case, others, PATIENCE, told)]
+    def judge_all(progress: Callable[[str], None]) -> "list[Verdict]":
+        return [verdict for case in cases for verdict in judge(case, others, PATIENCE, progress)]
 
-    verdicts = with_status(str(folder), all_judged)
+    verdicts = with_status(str(folder), judge_all)
     _show(verdicts)
     if out is not None:
         _write(out, verdicts)
@@ -133,7 +133,7 @@ def _show(verdicts: "Iterable[Verdict]") -> None:
 
 
 def _markdown(verdicts: "Sequence[Verdict]") -> str:
-    """How each method did in all; then each case with its title and a table, the claiming methods first."""
+    """The totals of each method; then each case with its title and a table, the claiming methods first."""
     lines = ["# Hard cases", "", INTRODUCTION, ""]
     if not all(verdict.claimed for verdict in verdicts):
         lines += [OTHERS, "", *_totals(verdicts), ""]
@@ -188,7 +188,7 @@ def _table(verdicts: "Sequence[Verdict]") -> list[str]:
 
 
 def _failing(verdict: "Verdict") -> str:
-    """What a method missed, in short."""
+    """The failure of a method, in short."""
     if verdict.bounds:
         return "missed: " + ", ".join(bound.name for bound in verdict.bounds if not bound.kept)
     if verdict.run is None or verdict.run.trajectory is None:

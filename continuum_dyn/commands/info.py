@@ -47,8 +47,8 @@ def _overview(log: "Log"):
     table = Table(title=escape(log.title), title_justify="left", show_header=False, box=None, pad_edge=False)
     table.add_column(style="dim", no_wrap=True)
     table.add_column(overflow="fold")
-    for name, told in _facts(log):
-        table.add_row(name, escape(told))
+    for name, value in _facts(log):
+        table.add_row(name, escape(value))
     return table
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from continuum_dyn.modes import RestModes
 
 MAX_ROWS = 20
-"""Most modes that are printed; the CSV holds all."""
+"""Largest number of modes that are printed; the CSV holds all."""
 COLUMNS = (
     "mode",
     "frequency",
@@ -26,7 +26,7 @@ COLUMNS = (
     "shape_y",
     "shape_theta",
 )
-"""Of the CSV, by glossary name."""
+"""Columns of the CSV, by glossary name."""
 
 
 def modes(

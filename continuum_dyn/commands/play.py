@@ -34,11 +34,11 @@ def play(
     from continuum_dyn.record import read_log
     from continuum_dyn.views.playback import recording, viewer
 
-    told = [read_log(path) for path in logs]
+    found = [read_log(path) for path in logs]
     if save is not None:
-        recording.save(told, save)
+        recording.save(found, save)
         typer.echo(f"wrote {save}")
     elif web:
-        viewer.serve(told, lambda address: typer.echo(f"{address}\nUntil Ctrl-C."))
+        viewer.serve(found, lambda address: typer.echo(f"{address}\nUntil Ctrl-C."))
     else:
-        viewer.show(told)
+        viewer.show(found)

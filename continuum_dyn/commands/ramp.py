@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder
-from continuum_dyn.commands.terminal.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.terminal.assertions import (
+    HELP,
+    Verdict,
+    exit_unless_held,
+    judge,
+    parse,
+    verdict_table,
+)
 from continuum_dyn.commands.terminal.pictures import save
 from continuum_dyn.commands.terminal.show import (
     duration,
@@ -45,12 +52,12 @@ def ramp(
     hold.
     """
     from continuum_dyn.answers.ramp import FIGURES, ramp_answers
-    from continuum_dyn.answers.ramp_rates import measured
+    from continuum_dyn.answers.ramp_rates import measure_at_other_rates
     from continuum_dyn.record import read_log
     from continuum_dyn.record.logged_scenario import logged_scenario
     from continuum_dyn.views.figures import ramp_plot
 
-    asked = parsed(assertions or [], FIGURES)
+    asked = parse(assertions or [], FIGURES)
     if not 0.0 < error < float("inf"):
         raise InputError(f"--error takes a length above 0, in m; read: {error:g}.")
     read = read_log(log)
@@ -58,10 +65,10 @@ def ramp(
     make_folder(out)
     if measure:
         scenario, before = logged_scenario(read), found
-        found = with_status(read.title, lambda progress: measured(before, scenario, progress))
+        found = with_status(read.title, lambda progress: measure_at_other_rates(before, scenario, progress))
     picture = out / f"{log.stem}_ramp.png"
     save(ramp_plot.ramp(read.title, found), picture)
-    verdicts = judged(asked, found.figures)
+    verdicts = judge(asked, found.figures)
     if as_json:
         asserted = [verdict.record for verdict in verdicts]
         named = {"log": str(log), "title": read.title} | _record(found)
@@ -69,11 +76,11 @@ def ramp(
     else:
         _show(read.title, found, verdicts)
         typer.echo(f"written: {picture}")
-    leave(verdicts)
+    exit_unless_held(verdicts)
 
 
 def _record(found: "RampAnswers") -> dict[str, Any]:
-    """What ``--json`` prints: every figure, each way's lag, and those at other rates."""
+    """The answer as JSON: every figure, the lag of each branch, and the lags at other rates."""
     drive = {"quantity": found.drive.quantity, "of": found.drive.of, "rate_unit": found.drive.rate_unit}
     ways, runs = [vars(way) for way in found.lags], [run._asdict() for run in found.measured]
     return {"drive": drive, **found.figures, "missing": found.missing, "ways": ways, "measured": runs}
@@ -99,10 +106,10 @@ def _figure_table(found: "RampAnswers") -> Any:
     figures, unit = found.figures, found.drive.rate_unit
     drive = f"{found.drive.quantity.replace('_', ' ')} of '{found.drive.of}'"
 
-    def row(words: str, name: str, told: Any, explained: str) -> None:
+    def row(words: str, name: str, write: Any, explained: str) -> None:
         value = figures[name]
         if value is not None:
-            table.add_row(words, told(value), explained)
+            table.add_row(words, write(value), explained)
         elif words and found.missing[name]:
             table.add_row(words, "none", found.missing[name])
 

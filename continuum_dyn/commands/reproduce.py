@@ -131,7 +131,7 @@ def _mass_table(found: "Rone2012") -> Any:
 
 
 def _below(program: "Equilibrium") -> str:
-    """By how much each disk's sag is smaller than the paper's, in percent."""
+    """Difference of each disk's sag from the paper's, smaller counted positive, in percent."""
     from continuum_dyn.experiments.reproduce import TABLE_2_VIRTUAL_WORK
 
     return ", ".join(f"{100 * below:.4f}" for below in 1 - program.disk_y / TABLE_2_VIRTUAL_WORK[:, 1])

@@ -1,4 +1,4 @@
-"""``continuum-dyn resume``: go on with a run that was broken off."""
+"""``continuum-dyn resume``: resume an interrupted run."""
 
 from pathlib import Path
 from typing import Annotated
@@ -28,11 +28,11 @@ def resume(
     from continuum_dyn.record import read_log
     from continuum_dyn.record.log_format import UNFINISHED
     from continuum_dyn.record.logged_scenario import logged_scenario
-    from continuum_dyn.record.resuming import logged_motion
+    from continuum_dyn.record.resuming import resumption_of
 
     unfinished = log.with_name(log.name + UNFINISHED)
     found = read_log(unfinished if not log.exists() and unfinished.exists() else log)
     scenario = logged_scenario(found)
     whole = found.path.with_name(found.path.name.removesuffix(UNFINISHED))
-    job = Job(found.path, scenario, whole, resumption=logged_motion(found, scenario))
+    job = Job(found.path, scenario, whole, resumption=resumption_of(found, scenario))
     raise typer.Exit(answer(job, as_json))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides
-from continuum_dyn.commands.terminal.extras import MissingExtraError, extras_named
+from continuum_dyn.commands.terminal.extras import MissingExtraError, naming_extras
 from continuum_dyn.commands.terminal.show import length, make_folder
 from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import InputError
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from statics.equilibria import Equilibrium
 
 MAX_ROWS = 20
-"""Most rows of a ramp that are printed."""
+"""Largest number of rows of a ramp that are printed."""
 MARKS = ("", "fold", "branching")
-"""What the table of a ramp calls ``Critical``."""
+"""Words for ``Critical`` in the table of a ramp."""
 STABLE = {True: "yes", False: "no", None: "unknown"}
 BAR_INTERVAL = 0.1
 """Shortest time between two updates of the progress bar, s."""
@@ -133,14 +133,14 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     record = _record(job.source, result, job.log, recording, wall_time)
     if comparison is not None:
         record["compared"] = asdict(comparison) | {"same": comparison.same}
-    told = {"comparison": comparison, "source": job.source, "without_recording": without}
-    return {"run": result, "log": job.log, "record": record} | told
+    extra = {"comparison": comparison, "source": job.source, "without_recording": without}
+    return {"run": result, "log": job.log, "record": record} | extra
 
 
 def _recording(log: "Log") -> tuple[Path | None, str]:
     """The recording that is written beside a log; or none, and why."""
     try:
-        with extras_named():
+        with naming_extras():
             from continuum_dyn.views.playback.recording import save
     except MissingExtraError as missing:
         return None, str(missing)
@@ -150,7 +150,7 @@ def _recording(log: "Log") -> tuple[Path | None, str]:
 
 
 def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_time: float) -> dict[str, Any]:
-    """What ``--json`` prints; ``tip`` is x, y (m), theta (rad), times are in s, ``static_gap`` in m."""
+    """The answer as JSON; ``tip`` is x, y (m), theta (rad), times are in s, ``static_gap`` in m."""
     arm = result.scenario.scene.arm
     record: dict[str, Any] = {
         "scenario": str(path),
@@ -236,7 +236,7 @@ def _show(report: dict[str, Any]) -> None:
         table.add_row("accuracy", _accuracy(result, result.tip_error))
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     if report["comparison"] is not None:
-        table.add_row("compared", _compared(report["comparison"], report["source"]))
+        table.add_row("compared", _comparison_text(report["comparison"], report["source"]))
     table.add_row("log", str(report["log"]))
     if report["without_recording"]:
         table.add_row("recording", f"none; {escape(report['without_recording'])}")
@@ -250,24 +250,24 @@ def _show(report: dict[str, Any]) -> None:
     console.print()
 
 
-def _compared(found: "Comparison", earlier: Path) -> str:
+def _comparison_text(found: "Comparison", earlier: Path) -> str:
     """Whether the run is the same as the earlier one."""
     verdict = "the same as" if found.same else "NOT the same as"
-    told = [f"{verdict} {earlier}"]
+    parts = [f"{verdict} {earlier}"]
     if found.outcomes[0] != found.outcomes[1]:
-        told.append(f"outcome {found.outcomes[1]}, before {found.outcomes[0]}")
+        parts.append(f"outcome {found.outcomes[1]}, before {found.outcomes[0]}")
     if found.tip_distance is None:
-        told.append("nothing to hold together")
+        parts.append("nothing to hold together")
     elif found.tip_distance == 0.0:
-        told.append("tips to the last bit")
+        parts.append("tips to the last bit")
     else:
         apart = f"{length(found.tip_distance)} apart {found.place}"
-        told.append(f"tips at most {apart}, allowed {length(found.allowed)}")
-    return "; ".join(told)
+        parts.append(f"tips at most {apart}, allowed {length(found.allowed)}")
+    return "; ".join(parts)
 
 
 def _add_motion(table: Any, result: "Run") -> None:
-    """How the motion was computed, how exact it is, and whether its energy balances."""
+    """Method, accuracy and energy balance of the motion."""
     trajectory, solver = result.trajectory, result.solver
     assert trajectory is not None
     assert solver is not None
@@ -284,7 +284,7 @@ def _add_motion(table: Any, result: "Run") -> None:
 
 
 def _accuracy(result: "Run", error: float) -> str:
-    """What was checked, and what it took."""
+    """The checks of the equilibria, and the work they took."""
     took = [] if result.solver is None else [f"rtol {result.solver.rtol:.1e}"]
     if result.mesh is not None:
         found = result.mesh
@@ -310,13 +310,13 @@ def _ramp_table(result: "Run", points: list[Any]) -> Any:
         table.add_column(name, justify="right")
     stride = -(-len(points) // MAX_ROWS)
     for number, point in enumerate(points):
-        told = "jumped" if point.jumped else MARKS[point.critical]
-        if number % stride and not told:
+        mark = "jumped" if point.jumped else MARKS[point.critical]
+        if number % stride and not mark:
             continue
         x, y, theta = point.tip
         drives = (f"{value:g}" for value in _drives(point))
         pose = f"{x * 1e3:.4f}", f"{y * 1e3:.4f}", f"{theta:.5f}"
-        table.add_row(*drives, *pose, STABLE[point.stable], told)
+        table.add_row(*drives, *pose, STABLE[point.stable], mark)
     return table
 
 

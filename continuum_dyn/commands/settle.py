@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder
-from continuum_dyn.commands.terminal.assertions import HELP, Verdict, judged, leave, parsed, verdict_table
+from continuum_dyn.commands.terminal.assertions import (
+    HELP,
+    Verdict,
+    exit_unless_held,
+    judge,
+    parse,
+    verdict_table,
+)
 from continuum_dyn.commands.terminal.pictures import save
 from continuum_dyn.commands.terminal.show import duration, length, make_folder, plain_table
 
@@ -15,7 +22,7 @@ if TYPE_CHECKING:
     from continuum_dyn.answers.settling import Settling
 
 CLEAR_MISFIT = 0.05
-"""Misfit from which on a ring-down is told to be more than one damped sinusoid."""
+"""Smallest misfit at which a ring-down is reported to be more than one damped sinusoid."""
 
 
 def settle(
@@ -38,13 +45,13 @@ def settle(
     from continuum_dyn.record import read_log
     from continuum_dyn.views.figures import settling_plot
 
-    asked = parsed(assertions or [], FIGURES)
+    asked = parse(assertions or [], FIGURES)
     read = read_log(log)
     found = settling(read)
     make_folder(out)
     picture = out / f"{log.stem}_settle.png"
     save(settling_plot.settling(read.title, found), picture)
-    verdicts = judged(asked, found.figures)
+    verdicts = judge(asked, found.figures)
     if as_json:
         record = {"log": str(log), "title": read.title, **found.figures, "missing": found.missing}
         asserted = [verdict.record for verdict in verdicts]
@@ -52,7 +59,7 @@ def settle(
     else:
         _show(read.title, found, verdicts)
         typer.echo(f"written: {picture}")
-    leave(verdicts)
+    exit_unless_held(verdicts)
 
 
 def _show(title: str, found: "Settling", verdicts: list[Verdict]) -> None:

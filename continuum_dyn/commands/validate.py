@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 MAX_SHOWN = 20
-"""Most departures of a file that are printed."""
+"""Largest number of departures of a file that are printed."""
 
 
 def validate(
@@ -19,11 +19,11 @@ def validate(
     Exit status: 0 all as they should be, 1 something is not, 2 a file cannot be read at all.
     """
     from continuum_dyn.record import FORMAT_VERSION
-    from continuum_dyn.record.reading import departures_of
+    from continuum_dyn.record.reading import list_departures
 
     wrong = False
     for log in logs:
-        found = departures_of(log)
+        found = list_departures(log)
         if not found:
             typer.echo(f"{log}: a log of format {FORMAT_VERSION}")
             continue

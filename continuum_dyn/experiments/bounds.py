@@ -1,4 +1,4 @@
-"""What must hold of a motion: bounds that follow from its tolerances and from the steps that it took.
+"""Bounds on a motion's errors, from its tolerances and its number of steps.
 
 A step may displace no disk by more than a tolerance, (rtol + atol) times the arm's length. Where the motion
 does not make an error larger by itself, N steps leave at most N tolerances. A disk that is off by x under a
@@ -8,7 +8,7 @@ disk, has the energy F s / 2. So a step leaves 2 x / s of the largest energy in 
     tip_error       N tolerances, times the amplification that the case states
     ledger          2 N tolerances / travel
     energy_growth   twice the ledger's: what is stored less what is put in may rise by its error alone. In a
-                    damped scene whose inputs stay what they are a tenth of the ledger's: only about the
+                    damped scene with constant inputs a tenth of the ledger's: only about the
                     turning points of the motion damping takes less than a step's error may add
     settled_gap     10 tolerances: errors fade, the last steps' are left; and what the case says still swings
     steps           what the case states
@@ -27,12 +27,12 @@ from continuum_dyn.simulation import Run
 from continuum_dyn.simulation.trajectory import Trajectory
 
 ROUNDING = 1e-14
-"""Part of the largest energy that a step may lose to rounding."""
+"""Largest energy that a step loses to rounding, in parts of the largest energy."""
 
 
 @dataclass(frozen=True)
 class Bound:
-    """What was ``found`` of a motion, None where it is not known, and the most that is ``allowed``."""
+    """A quantity of a motion: ``found``, None if not known, and its largest ``allowed`` value."""
 
     name: str
     found: float | None
@@ -45,7 +45,7 @@ class Bound:
 
     @property
     def part(self) -> float:
-        """Part of what is allowed that is used up."""
+        """The value found, in parts of the allowed one."""
         return float("inf") if self.found is None else self.found / self.allowed
 
     def __str__(self) -> str:
@@ -54,9 +54,9 @@ class Bound:
 
 
 def bounds_of(run: Run, expected: Expected, tip_error: float | None, whole: bool = True) -> list[Bound]:
-    """The bounds of a run that has ended as it should; ``tip_error`` (m), or None where nothing tells it.
+    """The bounds of a run that has ended as it should; ``tip_error`` (m) is None if it is not known.
 
-    ``whole`` says that it went to the end of the case: only then it must have settled.
+    ``whole``: the run went to the end of the case; only then it must have settled.
     """
     motion, scenario = run.trajectory, run.scenario
     assert motion is not None
@@ -87,7 +87,7 @@ def bounds_of(run: Run, expected: Expected, tip_error: float | None, whole: bool
 
 
 def is_left_alone(scenario: Scenario) -> bool:
-    """Whether a damped scene's inputs stay what they are from the start of the motion on."""
+    """Whether a damped scene's inputs are constant from the start of the motion on."""
     pieces = [piece for profile in scenario.profiles for piece in profile.pieces()]
     still = all(slope == amplitude == 0.0 for _, _, slope, amplitude, _, _ in pieces)
     return still and len(pieces) == len(scenario.profiles) and bool(dissipated_by(scenario.scene))

@@ -123,7 +123,8 @@ def prepare_motion(scenario: Scenario) -> Motion:
     """The scenario's motion. Raises ``InputError`` at rest, or without an equilibrium to start from."""
     scenario.require_motion("cost is asked of a motion")
     motion = Motion(scenario)
-    _ = motion.start
+    if not motion.rest.found:
+        raise InputError(f"the motion has no equilibrium to start from: {motion.rest.outcome}.")
     return motion
 
 

@@ -1,4 +1,4 @@
-"""What accuracy costs, as an HDF5 file of its own."""
+"""The cost of accuracy as an HDF5 file."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,7 +11,7 @@ from continuum_dyn.record.datasets import TEXT, whole_file, write_dataset, write
 
 
 def write_cost(cost: Cost, path: Path) -> None:
-    """Write the group ``cost``, and ``mesh`` where meshes were tried. Raises ``LogError``."""
+    """Write the group ``cost``, and ``mesh`` if meshes were tried. Raises ``LogError``."""
     prices = cost.prices
     columns = {
         "method": np.array([p.method for p in prices], TEXT),

@@ -1,4 +1,4 @@
-"""Hard cases: a scenario run by every method that claims it, and held to what must hold of its motion."""
+"""Hard cases: a scenario run by every method that claims it, and checked against bounds of its errors."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -22,13 +22,14 @@ from statics.outcome import Outcome
 from statics.scene import Scene
 
 TIGHTER = 1e-3
-"""Times a case's tolerances: those of the run that errors are measured against."""
+"""Tolerances of the reference run, in parts of the case's."""
 TIGHTEST = 1e-13
+"""Smallest tolerance of a reference run."""
 
 
 @dataclass(frozen=True)
 class HardCase:
-    """A scenario with what is expected of it; ``name`` is its file's, and whether extension is as there."""
+    """A scenario with its expectations; ``name`` is its file's, with a note on extension if changed."""
 
     name: str
     scenario: Scenario
@@ -42,11 +43,10 @@ class HardCase:
 
 @dataclass(frozen=True)
 class Verdict:
-    """How one method did: ``refused`` says why it cannot integrate the scene at all, else there is a run.
+    """The result of one method: a run, or in ``refused`` the reason why it cannot integrate the scene.
 
-    ``tip_error`` in m, None where the run ended otherwise than it should; ``bounds`` are then not known,
-    either. ``missed`` has a sentence for everything that did not hold. ``claimed`` tells whether the case
-    says that the method can do it.
+    ``tip_error`` in m and ``bounds`` are not known if the run did not end as it should. ``missed`` has a
+    sentence for every expectation that failed. ``claimed``: the case names the method as one of its own.
     """
 
     case: HardCase
@@ -65,7 +65,7 @@ class Verdict:
 
 
 def load_cases(path: Path) -> list[HardCase]:
-    """The case of a scenario file, and the same with or without extension where the file asks for it.
+    """Load the case of a scenario file, and the case with or without extension if the file asks for it.
 
     Raises ``InputError`` if it is not one of a motion, or expects nothing.
     """
@@ -94,19 +94,19 @@ def judge(
     case: HardCase,
     others: Iterable[Method] = (),
     patience: float = 3600.0,
-    told: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> list[Verdict]:
-    """A verdict for each method that claims the case, then for those ``others`` that do not.
+    """Judge each method that claims the case, then those ``others`` that do not.
 
-    An other has ``patience`` (s) for its run; ``told`` is called with what is going on.
+    Each of the others has ``patience`` (s) for its run; ``progress`` receives what is being computed.
     """
     claiming: tuple[Method, ...] = tuple(case.expected.steps)
-    told(f"{case.name}: reference")
+    progress(f"{case.name}: reference")
     reference = _reference(case)
     verdicts = []
     order: list[Method] = [*claiming, *(other for other in others if other not in claiming)]
     for method in order:
-        told(f"{case.name}: {method}")
+        progress(f"{case.name}: {method}")
         seconds = case.scenario.solver.max_seconds
         if method not in claiming:
             seconds = min(seconds, patience)
@@ -118,12 +118,12 @@ def _reference(case: HardCase) -> Trajectory | None:
     """The motion by the case's last method at tighter tolerances; None if it ended otherwise than it must."""
     rtol = max(TIGHTEST, TIGHTER * case.scenario.solver.rtol)
     tight = replace(case.scenario.solver, method=case.reference, step=None).with_rtol(rtol)
-    run = simulate(_as_far_as_claimed(case, tight))
+    run = simulate(_cut_to_claim(case, tight))
     return run.trajectory if run.outcome is _outcome(case, case.reference) else None
 
 
-def _as_far_as_claimed(case: HardCase, solver: Solver) -> Scenario:
-    """The scenario by that method, up to the sample that it goes to."""
+def _cut_to_claim(case: HardCase, solver: Solver) -> Scenario:
+    """The scenario by that method, cut after the last sample that the method must reach."""
     scenario, until = replace(case.scenario, solver=solver), case.expected.until.get(solver.method)
     study = scenario.require_motion("[expect] is about a motion")
     if until is None:
@@ -134,7 +134,7 @@ def _as_far_as_claimed(case: HardCase, solver: Solver) -> Scenario:
 
 
 def _outcome(case: HardCase, method: Method) -> Outcome:
-    """How the case must end by that method."""
+    """The outcome that the case must have by that method."""
     cut, settled = method in case.expected.until, case.expected.outcome is Outcome.SETTLED
     return Outcome.COMPLETED if cut and settled else case.expected.outcome
 
@@ -143,7 +143,7 @@ def _verdict(case: HardCase, method: Method, reference: Trajectory | None, budge
     claimed, solver = method in case.expected.steps, case.scenario.solver
     step = solver.step if method in FIXED_STEP else None
     try:
-        scenario = _as_far_as_claimed(case, replace(solver, method=method, step=step))
+        scenario = _cut_to_claim(case, replace(solver, method=method, step=step))
         run = simulate(scenario, budget=budget)
     except InputError as reason:
         missed = (str(reason),) if claimed else ()

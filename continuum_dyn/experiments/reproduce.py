@@ -1,4 +1,4 @@
-"""What a paper prints, computed again: by its printed equations, by the program, and by the exact rod."""
+"""The numbers of a paper, computed by its printed equations, by the program, and by the exact rod."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -23,17 +23,17 @@ TABLE_2_VIRTUAL_WORK = np.array(
 TABLE_2_FINITE_ELEMENTS = np.array(
     [[1.9999e-2, -5.8970e-5], [3.9999e-2, -2.0347e-4], [5.9998e-2, -3.9055e-4], [7.9997e-2, -5.9276e-4]]
 )
-"""The same by finite elements."""
+"""x and y of the same disks by finite elements, m; Rone 2012, Table 2."""
 TABLE_2_PERCENT_ERROR = np.array([2.8268e-5, 3.6533e-5, 5.7060e-5, 6.9687e-5])
-"""Of the distance from the base, virtual work against finite elements."""
+"""Error of each disk's distance from the base against finite elements, %; Rone 2012, Table 2."""
 
 FIGURE_4_TENSIONS = (0.05, 0.1, 0.5, 1.0, 2.0)
-"""N. The text names 0.05, 0.1, 0.5 and 2."""
+"""Tensions of Rone 2012, Fig. 4, N. The text names 0.05, 0.1, 0.5 and 2."""
 RAMP_TENSIONS = np.linspace(0.0, 2.0, 21)
 CORE_RADIUS = 4e-4
-"""m; Table 1's A and J_xx are those of this radius, rounded."""
+"""Radius of the core, m; Table 1's A and J_xx are rounded from it."""
 CORE_DENSITY = 7850.0
-"""kg/m^3; that of steel, whose modulus is Table 1's E."""
+"""Density of steel, kg/m^3; Table 1's E is its modulus."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Shapes:
 
     @property
     def by_law(self) -> dict[str, Equilibrium | PrintedShape | RodShape]:
-        """The three by the names that tables and files call them."""
+        """The three shapes by their names in tables and files."""
         return {"printed": self.printed, "program": self.program, "exact rod": self.rod}
 
     @property
@@ -88,7 +88,7 @@ class Rone2012:
 
     @property
     def of_opposite_sign(self) -> tuple[Shapes, ...]:
-        """Those of Fig. 4 whose tip is above the base by one law and below it by another."""
+        """The shapes of Fig. 4 whose tip is above the base by one law and below it by another."""
         return tuple(shapes for shapes in self.figure_4 if shapes.differ_in_sign)
 
 
@@ -102,7 +102,7 @@ class PaperArm:
         self.program = StaticSolver(self.scene)
 
     def shapes(self, tension: float) -> Shapes:
-        """All three under one tension, N."""
+        """The arm by all three laws under one tension, N."""
         return Shapes(
             tension=float(tension),
             program=self.program.solve(np.array([tension])),
@@ -129,7 +129,7 @@ def with_core_spread(scene: Scene) -> Scene:
 
 
 def reproduce(paper: str) -> Rone2012:
-    """Everything numeric in that paper, computed again. Raises ``InputError`` for one that is not known."""
+    """Compute every number of a paper again. Raises ``InputError`` if the paper is not known."""
     if paper not in PAPERS:
         raise InputError(f"unknown paper '{paper}'.{did_you_mean(paper, PAPERS)}")
     arm = PaperArm()

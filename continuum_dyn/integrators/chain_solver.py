@@ -10,7 +10,7 @@ from continuum_dyn.integrators import runge_kutta
 from continuum_dyn.integrators.runge_kutta import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 
 BATCH = 256
 """Most internal steps to one step of SciPy's: a call through ``solve_ivp`` costs as much as one of them."""
@@ -49,7 +49,7 @@ class ChainSolver(OdeSolver):
         vectorized: bool = False,
         *,
         dynamics: Dynamics,
-        spans: Sequence[Span],
+        spans: Sequence[Interval],
         tolerance: float,
         first_step: float,
         tableau: Tableau = ESDIRK5,

@@ -7,7 +7,7 @@ import numpy as np
 from continuum_dyn.integrators.methods import METHODS
 from continuum_dyn.modes import rates
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from continuum_dyn.scenario.scenario import dissipated_by
 from continuum_dyn.scenario.solver import Method
 from statics.errors import InputError
@@ -28,7 +28,9 @@ class Choice(NamedTuple):
     reason: str
 
 
-def choose(dynamics: Dynamics, start: np.ndarray, span: Span, duration: float, exact: bool = False) -> Choice:
+def choose(
+    dynamics: Dynamics, start: np.ndarray, span: Interval, duration: float, exact: bool = False
+) -> Choice:
     """The method for ``method = "auto"``, from the modes of the motion linearized at its start.
 
     ``exact`` says that an accuracy in metres is requested.

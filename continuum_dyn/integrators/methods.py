@@ -12,13 +12,13 @@ from continuum_dyn.integrators.guard import Guard
 from continuum_dyn.integrators.midpoint_solver import MidpointSolver
 from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, Tableau
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from continuum_dyn.scenario.solver import FIXED_STEP, Solver
 
 FIRST_STEP = 1e-3
 """First step of each solver, in radians of the arm's lowest frequency or of the drive's, if higher."""
 
-Options = Callable[[Dynamics, Solver, Sequence[Span]], dict[str, Any]]
+Options = Callable[[Dynamics, Solver, Sequence[Interval]], dict[str, Any]]
 """Makes a solver's options beside the equations, for consecutive intervals."""
 
 
@@ -57,37 +57,37 @@ class Integrator:
         return self.implicit and self.crosses_corners
 
 
-def drive_frequency(span: Span) -> float:
+def drive_frequency(interval: Interval) -> float:
     """Highest angular frequency of the inputs, rad/s."""
-    return float(np.max(span.pieces[:, 4], initial=0.0))
+    return float(np.max(interval.pieces[:, 4], initial=0.0))
 
 
-def _first_step(dynamics: Dynamics, span: Span) -> float:
+def _first_step(dynamics: Dynamics, interval: Interval) -> float:
     """A step that resolves the arm and its drive: at rest, solvers left alone try the whole interval."""
-    return min(FIRST_STEP / max(dynamics.frequency, drive_frequency(span)), span.end - span.start)
+    return min(FIRST_STEP / max(dynamics.frequency, drive_frequency(interval)), interval.end - interval.start)
 
 
 def _chain_method(name: str, tableau: Tableau, implicit: bool) -> Integrator:
-    def options(dynamics: Dynamics, solver: Solver, spans: Sequence[Span]) -> dict[str, Any]:
+    def options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
         return {
             "dynamics": dynamics,
-            "spans": spans,
+            "spans": intervals,
             "tableau": tableau,
             "tolerance": solver.tolerance(dynamics.scene.arm.total_length),
-            "first_step": _first_step(dynamics, spans[0]),
+            "first_step": _first_step(dynamics, intervals[0]),
         }
 
     return Integrator(name, _guard(ChainSolver), options, implicit, on_chain=True)
 
 
-def _midpoint_options(dynamics: Dynamics, solver: Solver, spans: Sequence[Span]) -> dict[str, Any]:
-    return {"dynamics": dynamics, "span": spans[0], "step": solver.step}
+def _midpoint_options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
+    return {"dynamics": dynamics, "span": intervals[0], "step": solver.step}
 
 
 def _scipy_method(method: type[OdeSolver], implicit: bool = False) -> Integrator:
-    def options(dynamics: Dynamics, solver: Solver, spans: Sequence[Span]) -> dict[str, Any]:
-        atol, first_step = solver.atol * dynamics.scales(), _first_step(dynamics, spans[0])
-        jacobian = {"jac": lambda t, y: dynamics.jacobian(t, y, spans[0])} if implicit else {}
+    def options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
+        atol, first_step = solver.atol * dynamics.scales(), _first_step(dynamics, intervals[0])
+        jacobian = {"jac": lambda t, y: dynamics.jacobian(t, y, intervals[0])} if implicit else {}
         return {"rtol": solver.rtol, "atol": atol, "first_step": first_step} | jacobian
 
     return Integrator(method.__name__, _guard(method), options, implicit)

@@ -8,7 +8,7 @@ from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.integrators import midpoint
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 
 BATCH = 256
 """Most internal steps to one step of SciPy's."""
@@ -36,7 +36,7 @@ class MidpointSolver(OdeSolver):
         vectorized: bool = False,
         *,
         dynamics: Dynamics,
-        span: Span,
+        span: Interval,
         step: float,
     ) -> None:
         super().__init__(fun, t0, y0, t_bound, vectorized)

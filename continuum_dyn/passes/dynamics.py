@@ -7,7 +7,7 @@ import numpy as np
 
 from continuum_dyn.passes import accelerations, observation
 from continuum_dyn.passes.motion_passes import LINEARIZED, MIDPOINT, MOTION
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics.errors import InputError
 from statics.kernels.loading import Family, Kernel, Loader, load
 from statics.scene import Scene
@@ -55,12 +55,12 @@ class Dynamics:
         u = np.zeros_like(coordinates) if rates is None else rates
         return np.concatenate([coordinates.ravel(), u.ravel(), [0.0, 0.0]])
 
-    def rate(self, t: float, y: np.ndarray, span: Span) -> np.ndarray:
+    def rate(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
         """dy/dt."""
         kernel, *tables = self.linearized
         return accelerations.rate(kernel.passes, t, y, span.pieces, *tables, self.dofs)
 
-    def jacobian(self, t: float, y: np.ndarray, span: Span, *, once: bool = False) -> np.ndarray:
+    def jacobian(self, t: float, y: np.ndarray, span: Interval, *, once: bool = False) -> np.ndarray:
         """d(rate)/dy, exact; ``once`` does without a compilation that a single one is not worth."""
         kernel, *tables = self.linearized
         function = getattr(accelerations.rate_jacobian, "py_func", None) if once else None

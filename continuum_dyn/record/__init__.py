@@ -1,4 +1,4 @@
-"""Logs: HDF5 files that hold a run, and what is needed to understand and to repeat it."""
+"""Runs come in, HDF5 logs go out, and from these what is needed to plot, repeat or resume a run."""
 
 from continuum_dyn.record.log import Log
 from continuum_dyn.record.log_format import FORMAT_VERSION

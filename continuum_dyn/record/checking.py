@@ -1,7 +1,7 @@
-"""A log held against the format: every place where it departs from it, in words.
+"""Checks a log against the format: every place where it departs from it, in words.
 
-What is in a file decides nothing here but numbers and texts: nothing of it is run, imported or unpickled,
-no other file is opened, and no more memory is taken than the file's size warrants.
+A file supplies numbers and texts alone: nothing of it is run, imported or unpickled, no other file is
+opened, and no more memory is taken than the file's size warrants.
 """
 
 from collections.abc import Iterator, Mapping
@@ -24,9 +24,9 @@ from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
 
 SMALL = 16_000_000
-"""Bytes that a log may hold however small its file is."""
+"""Largest size of a log's datasets, bytes, if its file is small."""
 MOST_EXPANSION = 100
-"""Beyond that, bytes that a log may hold for each in its file, which may be compressed."""
+"""Largest size of a log's datasets over that of its file, which may be compressed, if it is large."""
 PLAIN_FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 """Compression and checksums that HDF5 has built in; others would load libraries."""
 
@@ -34,9 +34,9 @@ _SCALARS = {str: "a text", float: "a finite number", int: "a whole number", bool
 
 
 def departures(file: h5py.File) -> Iterator[str]:
-    """What cannot be read of a log: names, types, shapes and links of what it must hold.
+    """Departures that prevent reading: wrong names, types, shapes and links of required parts.
 
-    The format and its version come first; where they are others nothing else is looked at.
+    Nothing else is checked if the format or its version is another one.
     """
     found = list(_other_format(file))
     if found:
@@ -63,7 +63,7 @@ def _other_format(file: h5py.File) -> Iterator[str]:
 
 
 def attribute(place: h5py.Group | h5py.Dataset, name: str) -> Any:
-    """A text, a number, a truth value; None where there is none of that name, or nothing of that kind."""
+    """Read an attribute: a text, a number or a truth value; None if it is missing or of another kind."""
     if name not in place.attrs:
         return None
     kind = place.attrs.get_id(name)
@@ -90,10 +90,11 @@ def _wrong_attributes(
             if name in needed:
                 yield f"attribute {name} is missing"
         elif not _is(value, kind):
-            yield f"attribute {name}: {_SCALARS[kind]} is expected; read {_short(place.attrs.get_id(name))}"
+            read = _form_of(place.attrs.get_id(name))
+            yield f"attribute {name}: {_SCALARS[kind]} is expected; read {read}"
 
 
-def _short(attribute_id: h5py.h5a.AttrID) -> str:
+def _form_of(attribute_id: h5py.h5a.AttrID) -> str:
     return f"one of type {attribute_id.dtype} and shape {attribute_id.shape}"
 
 
@@ -104,11 +105,11 @@ def _wrong_outcome(file: h5py.File) -> Iterator[str]:
 
 
 def _wrong_tables(file: h5py.File) -> Iterator[str]:
-    group, wrong = linked(file, "tables", h5py.Group)
+    group, wrong = member(file, "tables", h5py.Group)
     if wrong:
         yield wrong
     for name in group or ():
-        table, wrong = linked(group, name, h5py.Dataset)
+        table, wrong = member(group, name, h5py.Dataset)
         if wrong:
             yield wrong
         elif table is not None and (table.dtype != np.uint8 or table.ndim != 1):
@@ -117,8 +118,8 @@ def _wrong_tables(file: h5py.File) -> Iterator[str]:
             yield f"{table.name}: its attribute file, the name of the table, is missing"
 
 
-def linked(group: h5py.Group, name: str, kind: type) -> tuple[Any, str]:
-    """What a group holds under a name, and what is wrong with it; None where there is nothing or it is wrong.
+def member(group: h5py.Group, name: str, kind: type) -> tuple[Any, str]:
+    """The member of a group, and the fault in it; None if it is missing or faulty.
 
     Links that lead elsewhere are not followed.
     """
@@ -146,7 +147,7 @@ def _stored_elsewhere(dataset: h5py.Dataset) -> str:
 
 
 def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Iterator[str]:
-    group, wrong = linked(file, name, h5py.Group)
+    group, wrong = member(file, name, h5py.Group)
     if wrong:
         yield wrong
     if group is None:
@@ -155,7 +156,7 @@ def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Ite
         yield from _wrong_attributes(group, {}, dict.fromkeys(COUNTERS, int))
     datasets = {}
     for dataset, column in known.items():
-        found, wrong = linked(group, dataset, h5py.Dataset)
+        found, wrong = member(group, dataset, h5py.Dataset)
         if found is not None:
             datasets[dataset] = found
             wrong = _wrong_type(found, column)
@@ -167,7 +168,7 @@ def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Ite
 
 
 def _wrong_arm(file: h5py.File) -> Iterator[str]:
-    arm = linked(file, "arm", h5py.Group)[0]
+    arm = member(file, "arm", h5py.Group)[0]
     if arm is None:
         return
     spacing = {} if "disk_spacing" in arm else {"disk_spacing": float}
@@ -182,7 +183,7 @@ def _wrong_type(dataset: h5py.Dataset, column: Column) -> str:
 
 
 def kind_of(dataset: h5py.Dataset) -> Kind | None:
-    """The type of its values, or None for one that the format does not know."""
+    """The type of a dataset's values; None if the format does not know it."""
     if h5py.check_string_dtype(dataset.dtype) is not None:
         return Kind.TEXT
     kinds = {("f", 8): Kind.FLOAT, ("i", 8): Kind.INTEGER, ("b", 1): Kind.TRUTH}
@@ -215,13 +216,13 @@ def _wrong_shapes(
 
 
 def _too_large(file: h5py.File) -> Iterator[str]:
-    """Sizes that are declared, but not there."""
+    """Datasets declared larger than the file can hold."""
     allowed = max(SMALL, MOST_EXPANSION * file.id.get_filesize())
-    groups = [linked(file, name, h5py.Group)[0] for name in ("tables", *GROUPS)]
+    groups = [member(file, name, h5py.Group)[0] for name in ("tables", *GROUPS)]
     declared = 0
     for group in groups:
         for name in group or ():
-            found = linked(group, name, h5py.Dataset)[0]
+            found = member(group, name, h5py.Dataset)[0]
             if found is not None and found.shape is not None:
                 declared += int(np.prod(found.shape, dtype=object)) * found.dtype.itemsize
     if declared > allowed:
@@ -229,16 +230,16 @@ def _too_large(file: h5py.File) -> Iterator[str]:
 
 
 def oddities(file: h5py.File) -> Iterator[str]:
-    """What a log can be read in spite of: units, meanings and scales that are not as the format has them."""
+    """Departures that do not prevent reading: units, meanings and scales unlike the format's."""
     for name, known in GROUPS.items():
-        group = linked(file, name, h5py.Group)[0]
+        group = member(file, name, h5py.Group)[0]
         if group is None:
             continue
         for dataset in group:
             if dataset not in known:
                 yield f"/{name}/{dataset}: not a name of the format"
                 continue
-            found = linked(group, dataset, h5py.Dataset)[0]
+            found = member(group, dataset, h5py.Dataset)[0]
             if found is not None:
                 yield from _odd_words(found, dataset)
         yield from _odd_scales(group, known)
@@ -256,20 +257,20 @@ def _odd_words(found: h5py.Dataset, name: str) -> Iterator[str]:
 
 
 def _odd_scales(group: h5py.Group, known: Mapping[str, Column]) -> Iterator[str]:
-    """Dimensions without their scale, by what the scales say of it themselves."""
+    """Dimensions without their scale, by the scales' own lists of references."""
     attached: dict[str, set[tuple[str, int]]] = {}
     for name, column in known.items():
         if column.dimensions == (name,) and name in group:
             if attribute(group[name], "CLASS") != "DIMENSION_SCALE":
                 yield f"{group.name}/{name}: not made a dimension scale"
-            attached[name] = set(_attached(group[name]))
+            attached[name] = set(_attachments(group[name]))
     for name, column in known.items():
         for axis, scale in enumerate(column.dimensions):
             if name in group and name != scale and (name, axis) not in attached.get(scale, ()):
                 yield f"{group.name}/{name}: {scale} is not attached to its axis {axis} as a scale"
 
 
-def _attached(scale: h5py.Dataset) -> Iterator[tuple[str, int]]:
+def _attachments(scale: h5py.Dataset) -> Iterator[tuple[str, int]]:
     """Names of the datasets that a scale is attached to, and which of their axes."""
     if "REFERENCE_LIST" not in scale.attrs:
         return

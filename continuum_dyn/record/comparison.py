@@ -1,4 +1,4 @@
-"""A run against an earlier one of the same scenario."""
+"""Compares a run with an earlier one of the same scenario."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,17 +8,17 @@ import numpy as np
 from continuum_dyn.record import Log
 
 PART_OF_LENGTH = 1e-7
-"""Part of the arm's length by which tips may differ where no tolerance says how far."""
+"""Largest distance of the tips, in arm lengths, if no tolerance gives one."""
 STEPS_TOGETHER = 100.0
-"""What the errors of all steps may come to, over the tolerance of one."""
+"""Largest error of all steps together, over the tolerance of one."""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Whether two logs tell the same: both outcomes, and the largest distance (m) of their tips.
+    """The outcomes of two logs, and the largest distance (m) of their tips.
 
-    ``time`` (s), or the number of an equilibrium, says where that is; ``allowed`` (m) is what their own
-    errors may come to. ``tip_distance`` is None where they have nothing in common.
+    ``place`` says at which time (s), or at which equilibrium; ``allowed`` (m) bounds the logs' own errors.
+    ``tip_distance`` is None if they have nothing in common.
     """
 
     outcomes: tuple[str, str]
@@ -34,7 +34,7 @@ class Comparison:
 
 
 def compare(first: Log, second: Log) -> Comparison:
-    """The two held together where both have samples, or else equilibria."""
+    """Compare two logs at the samples, or else the equilibria, that both have."""
     moved = bool(first.trajectory and second.trajectory)
     columns = (first.trajectory, second.trajectory) if moved else (first.equilibria, second.equilibria)
     distance, place = None, ""
@@ -52,7 +52,7 @@ def compare(first: Log, second: Log) -> Comparison:
 
 
 def _common(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """What both come to, at the places of the first."""
+    """The values of the first within the range of both."""
     if not (first.size and second.size):
         return first[:0]
     return first[(first >= second[0]) & (first <= second[-1])]

@@ -14,9 +14,9 @@ from statics.quantities import QUANTITIES
 from statics.support.interruption import held
 
 CHUNK = 512
-"""Rows of a dataset that grows in one piece of the file."""
+"""Number of rows in a chunk of a growing dataset."""
 VERSIONS = ("v110", "v110")
-"""Of the file format: the first that can be read while it is written."""
+"""Oldest and newest HDF5 version of the file: the first that can be read while it is written."""
 TEXT = h5py.string_dtype()
 
 
@@ -28,7 +28,7 @@ def whole_file(path: Path) -> Iterator[h5py.File]:
         try:
             with h5py.File(new, "w", libver=VERSIONS) as file:
                 yield file
-            in_place(new, path)
+            move_into_place(new, path)
         except OSError as error:
             raise LogError(f"cannot write {path}: {reason(error)}.") from error
         finally:
@@ -36,7 +36,7 @@ def whole_file(path: Path) -> Iterator[h5py.File]:
                 new.unlink()
 
 
-def in_place(new: Path, path: Path) -> None:
+def move_into_place(new: Path, path: Path) -> None:
     """Move a file to its place once all of it is on disk."""
     with new.open("rb") as file:
         os.fsync(file.fileno())
@@ -44,7 +44,7 @@ def in_place(new: Path, path: Path) -> None:
 
 
 def reason(error: OSError) -> str:
-    """Why a file could not be read or written, in a line: HDF5 tells of much else."""
+    """The reason why a file could not be read or written, in a line: HDF5 adds much else."""
     return os.strerror(error.errno) if error.errno else str(error).splitlines()[0]
 
 
@@ -72,7 +72,7 @@ def write_columns(
     made = {name: write_scale(group, name, values) for name, values in scales.items()}
     for name, values in columns.items():
         write_dataset(group, name, values, *(made[scale] for scale in known[name].dimensions))
-    _hint(group, known)
+    _mark_plot(group, known)
 
 
 def begin_columns(
@@ -81,24 +81,25 @@ def begin_columns(
     columns: Mapping[str, np.ndarray],
     known: Mapping[str, Column],
 ) -> None:
-    """The same with room for rows to come and none yet; the first scale grows with them."""
+    """Datasets without rows that can grow, over dimensions; the first scale grows with them."""
     first, *others = scales
     made = {name: write_scale(group, name, scales[name]) for name in others}
-    made[first] = _growing(group, first, scales[first])
+    made[first] = _create_growing(group, first, scales[first])
     made[first].make_scale(first)
     _describe(made[first], first)
     for name, values in columns.items():
-        _attach(_growing(group, name, values), name, tuple(made[scale] for scale in known[name].dimensions))
-    _hint(group, known)
+        dimensions = tuple(made[scale] for scale in known[name].dimensions)
+        _attach(_create_growing(group, name, values), name, dimensions)
+    _mark_plot(group, known)
 
 
 def check_finite(group: h5py.Group, name: str, values: np.ndarray) -> None:
-    """Raises ``LogError`` that names the dataset."""
+    """Raise ``LogError`` that names the dataset, unless all values are finite."""
     if values.dtype.kind == "f" and not np.isfinite(values).all():
         raise LogError(f"{group.name}/{name} holds numbers that are not finite; they belong in no log.")
 
 
-def _growing(group: h5py.Group, name: str, values: np.ndarray) -> h5py.Dataset:
+def _create_growing(group: h5py.Group, name: str, values: np.ndarray) -> h5py.Dataset:
     beside = values.shape[1:]
     chunk = (CHUNK, *(max(size, 1) for size in beside))
     return group.create_dataset(
@@ -118,7 +119,7 @@ def _describe(dataset: h5py.Dataset, name: str) -> None:
     dataset.attrs["long_name"] = quantity.meaning
 
 
-def _hint(group: h5py.Group, known: Mapping[str, Column]) -> None:
+def _mark_plot(group: h5py.Group, known: Mapping[str, Column]) -> None:
     """The NeXus attributes by which viewers such as h5web find a plot of the group, and its axes."""
     signal = PLOTTED.get(group.name.rpartition("/")[2])
     if signal is None:

@@ -1,6 +1,6 @@
 """The heaps in which an HDF5 file keeps its texts, checked before HDF5 reads them.
 
-They are the one part of its structure without a checksum, and HDF5 may follow a spoiled one without end
+They are the one part of its structure without a checksum, and HDF5 may follow a damaged one without end
 (HDF5 File Format Specification, version 3.0, sec. III.E, global heap).
 """
 
@@ -11,18 +11,18 @@ from pathlib import Path
 
 SIGNATURE = b"GCOL\x01\x00\x00\x00"
 HEADER = 16
-"""Bytes before the objects of a heap, and before each object."""
+"""Size of the header of a heap, and of each object in it, bytes."""
 
 
-def spoiled_heaps(path: Path) -> bool:
-    """Whether any heap of the file is not as it should be. Raises ``OSError``."""
+def has_damaged_heaps(path: Path) -> bool:
+    """Whether any heap of the file is damaged. Raises ``OSError``."""
     if path.stat().st_size == 0:
         return False
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        return not all(_is_sound(content, at) for at in _places(content))
+        return not all(_is_sound(content, at) for at in _heap_offsets(content))
 
 
-def _places(content: mmap.mmap) -> Iterator[int]:
+def _heap_offsets(content: mmap.mmap) -> Iterator[int]:
     at = content.find(SIGNATURE)
     while at >= 0:
         yield at

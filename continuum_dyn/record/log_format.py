@@ -1,6 +1,6 @@
-"""The format of logs, as data: what is in which group, over which dimensions, of which type.
+"""The format of logs, as data: the datasets of each group, their dimensions and types.
 
-``docs/reference/log_format.md`` says it in words. Units and meanings are the glossary's.
+``docs/reference/log_format.md`` describes it in words. Units and meanings are the glossary's.
 """
 
 from dataclasses import dataclass, fields
@@ -11,7 +11,7 @@ from statics.arm import Each
 FORMAT = "continuum-dyn log"
 FORMAT_VERSION = 2
 UNFINISHED = ".part"
-"""What the name of a log ends in while its run goes on, and after a run that was killed."""
+"""Suffix of a log while its run goes on, and after a run that was killed."""
 
 
 class Kind(StrEnum):
@@ -45,7 +45,7 @@ _LOAD = {"load": Column(("load",), Kind.INTEGER, required=False)}
 
 
 def _shapes(along: str) -> dict[str, Column]:
-    """What a motion's samples and equilibria have in common."""
+    """Datasets that a motion's samples and equilibria have in common."""
     return {
         **_ARM_SCALES,
         **_LOAD,
@@ -91,7 +91,7 @@ GROUPS: dict[str, dict[str, Column]] = {
 without an equilibrium no ``equilibria``."""
 
 PLOTTED = {"trajectory": "disk_y", "equilibria": "disk_y"}
-"""What a viewer of HDF5 files shows of a group at first."""
+"""The dataset of a group that a viewer of HDF5 files plots first."""
 
 ATTRIBUTES: dict[str, type] = {
     "title": str,
@@ -115,7 +115,7 @@ OPTIONAL_ATTRIBUTES: dict[str, type] = {
     "mesh_error": float,
     "mesh_extrapolated": bool,
 }
-"""Those that not every run has."""
+"""Attributes of the file that not every run has."""
 
 COUNTERS = (
     *("steps", "segment_evaluations", "rejections", "newton_iterations"),

@@ -10,9 +10,9 @@ from statics.errors import InputError, LogError
 
 
 def logged_scenario(log: Log, overrides: Sequence[str] = ()) -> Scenario:
-    """The scenario that a log answers, of the text and the tables that it carries, with changes to it.
+    """The scenario of a log, from the text and the tables in it, with changes applied.
 
-    Raises ``LogError`` for a log that carries none, or one that this program does not take.
+    Raises ``LogError`` if the log holds none, or one that this program refuses.
     """
     if not log.scenario:
         raise LogError(f"{log.path}: made from Python, it carries no scenario's text.")

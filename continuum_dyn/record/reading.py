@@ -1,4 +1,4 @@
-"""Logs read back: refused where they are not what the format says."""
+"""Reads logs, and refuses those that depart from the format."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ import numpy as np
 
 from continuum_dyn.record.checking import attribute, departures, kind_of, oddities
 from continuum_dyn.record.datasets import reason
-from continuum_dyn.record.heaps import spoiled_heaps
+from continuum_dyn.record.heaps import has_damaged_heaps
 from continuum_dyn.record.log import Log
 from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES, Kind
 from continuum_dyn.record.unclosed import is_unclosed, open_unclosed
@@ -17,42 +17,42 @@ from statics.errors import LogError
 from statics.outcome import Outcome
 
 MAX_SHOWN = 12
-"""Most departures from the format that an error tells of."""
+"""Largest number of departures from the format that an error lists."""
 
 
 def read_log(path: Path) -> Log:
-    """Read a whole log, also one that is still written or was broken off: up to its last whole sample.
+    """Read a whole log, or an unfinished one up to its last whole sample.
 
     Raises ``LogError`` for a file that is not a log, or of another format version, or whose names, types or
     shapes are not the format's; it names them.
     """
-    with opened(path) as file:
+    with open_log(path) as file:
         found = list(departures(file))
         if found:
             more = [f"and {len(found) - MAX_SHOWN} more"] if len(found) > MAX_SHOWN else []
             raise LogError(f"{path}: " + ".\n  ".join([*found[:MAX_SHOWN], *more]) + ".")
         log = _read(file, path)
-    spoiled = _not_finite(log)
-    if spoiled:
-        raise LogError(f"{path}: {spoiled[0]} holds numbers that are not finite.")
+    not_finite = _not_finite(log)
+    if not_finite:
+        raise LogError(f"{path}: {not_finite[0]} holds numbers that are not finite.")
     return log
 
 
-def departures_of(path: Path) -> list[str]:
-    """Everything in which a file departs from the format, in words. Raises ``LogError`` like ``opened``."""
-    with opened(path) as file:
+def list_departures(path: Path) -> list[str]:
+    """List all departures of a file from the format, in words. Raises ``LogError`` like ``open_log``."""
+    with open_log(path) as file:
         found = list(departures(file))
         if found:
             return found
-        spoiled = [f"{name}: numbers that are not finite" for name in _not_finite(_read(file, path))]
-        return [*oddities(file), *spoiled]
+        not_finite = [f"{name}: numbers that are not finite" for name in _not_finite(_read(file, path))]
+        return [*oddities(file), *not_finite]
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[h5py.File]:
-    """The HDF5 file, to read, also while it is written. Raises ``LogError`` for whatever HDF5 cannot read."""
+def open_log(path: Path) -> Iterator[h5py.File]:
+    """Open an HDF5 file to read, also while it is written. Raises ``LogError`` if HDF5 cannot read it."""
     try:
-        if spoiled_heaps(path):
+        if has_damaged_heaps(path):
             raise LogError(f"{path}: the texts in it are spoiled.")
         with open_unclosed(path) if is_unclosed(path) else h5py.File(path, "r", locking=False) as file:
             yield file
@@ -115,7 +115,7 @@ def _values(dataset: h5py.Dataset) -> np.ndarray:
 
 
 def _whole_samples(columns: dict[str, np.ndarray], complete: bool) -> dict[str, np.ndarray]:
-    """Those that all columns of a log that is not complete have: some may be a block ahead."""
+    """The samples that all columns have: in a log that is not complete some may be a block ahead."""
     if complete or not columns:
         return columns
     along = [name for name in columns if GROUPS["trajectory"][name].dimensions[0] == "time"]

@@ -1,4 +1,4 @@
-"""The motion of a log that was broken off, for the simulation to go on with."""
+"""Reads from a log the state from which an interrupted motion resumes."""
 
 import numpy as np
 from pydantic import ValidationError
@@ -11,17 +11,17 @@ from continuum_dyn.simulation.resumption import Resumption
 from statics.errors import LogError
 from statics.outcome import Outcome
 
-BROKEN_OFF = (Outcome.INTERRUPTED, Outcome.BUDGET_EXCEEDED)
-"""Outcomes that say nothing against going on."""
+RESUMABLE = (Outcome.INTERRUPTED, Outcome.BUDGET_EXCEEDED)
+"""Outcomes of runs that can be resumed."""
 
 
-def logged_motion(log: Log, scenario: Scenario) -> Resumption | None:
-    """What the log of that scenario has of its motion; None where it must begin anew.
+def resumption_of(log: Log, scenario: Scenario) -> Resumption | None:
+    """State from which the motion of a log resumes; None if the motion must restart.
 
-    That is where nothing moved yet, and where an accuracy is sought, by trials. Raises ``LogError`` for a
-    log that has ended, or whose samples are not those of its scenario.
+    It must restart if nothing moved yet, or if its accuracy is found by trials. Raises ``LogError`` if the
+    run has ended, or if the samples do not belong to the scenario.
     """
-    if log.complete and log.outcome not in BROKEN_OFF:
+    if log.complete and log.outcome not in RESUMABLE:
         raise LogError(
             f"{log.path}: the run has ended ({log.outcome}); there is nothing to go on with. "
             f"To run it again: continuum-dyn run {log.path}"
@@ -35,7 +35,7 @@ def logged_motion(log: Log, scenario: Scenario) -> Resumption | None:
 
 
 def _solver(log: Log, scenario: Scenario) -> Solver:
-    """The one that has resumption: with the method that the program had chosen, if it was its to choose."""
+    """The solver of the interrupted run, with the method that was chosen for it."""
     names = ("method", "rtol", "atol", "step")
     given = {name: log.attributes[name] for name in names if name in log.attributes}
     if given.get("method") not in METHODS:
@@ -51,12 +51,12 @@ def _solver(log: Log, scenario: Scenario) -> Solver:
 
 def _check_samples(log: Log, scenario: Scenario) -> None:
     found, arm = log.trajectory, scenario.scene.arm
-    told = f"{log.path}: its trajectory is not that of its scenario:"
+    message = f"{log.path}: its trajectory is not that of its scenario:"
     if found["bend_angle"].shape[1] != arm.segments:
-        raise LogError(f"{told} {found['bend_angle'].shape[1]} segments of {arm.segments}.")
+        raise LogError(f"{message} {found['bend_angle'].shape[1]} segments of {arm.segments}.")
     for name in ("elongation", "elongation_rate"):
         if (name in found) != ("elongation" in scenario.scene.coordinates):
-            raise LogError(f"{told} {name} is {'there' if name in found else 'missing'}.")
+            raise LogError(f"{message} {name} is {'there' if name in found else 'missing'}.")
     time = found["time"]
     if time[0] != 0.0 or np.any(np.diff(time) <= 0.0):
-        raise LogError(f"{told} its times do not rise from 0.")
+        raise LogError(f"{message} its times do not rise from 0.")

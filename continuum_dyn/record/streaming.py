@@ -1,4 +1,4 @@
-"""A motion's log, written while the motion is computed: FILE.h5.part, until the answer is there.
+"""A motion's log, written while the motion is computed: FILE.h5.part, until the run has ended.
 
 HDF5's mode for a single writer and many readers keeps what was flushed readable whenever the writer is
 killed, if no object is made once it has begun. So the file is made whole, with no samples, before it takes
@@ -16,7 +16,14 @@ from typing import TYPE_CHECKING, Self
 import h5py
 import numpy as np
 
-from continuum_dyn.record.datasets import CHUNK, VERSIONS, begin_columns, check_finite, in_place, reason
+from continuum_dyn.record.datasets import (
+    CHUNK,
+    VERSIONS,
+    begin_columns,
+    check_finite,
+    move_into_place,
+    reason,
+)
 from continuum_dyn.record.log_format import GROUPS, UNFINISHED
 from continuum_dyn.record.writing import (
     attributes_of,
@@ -24,7 +31,7 @@ from continuum_dyn.record.writing import (
     scales_of,
     write_equilibria,
     write_log,
-    write_what_was_asked,
+    write_scenario,
 )
 from statics.errors import LogError
 from statics.support.interruption import held
@@ -34,14 +41,14 @@ if TYPE_CHECKING:
     from continuum_dyn.simulation.trajectory import Trajectory
 
 ROOM = 200_000
-"""Bytes kept free beside a block's chunks, for what HDF5 notes of them."""
+"""Room kept free beside a block's chunks, for HDF5's own records of them, bytes."""
 
 
 class StreamedLog:
-    """The log of a run at ``path``, told of it as it goes: a ``simulation.Sink``, and a context.
+    """The log of a run at ``path``, written as samples arrive: a ``simulation.Sink``, and a context.
 
-    Left without ``finish`` it keeps the unfinished log, if there is one. All methods raise ``LogError`` where
-    a file cannot be written, that tells what is left.
+    Without ``finish`` the unfinished log is kept, if there is one. All methods raise ``LogError`` if a file
+    cannot be written; it names the file that is left.
     """
 
     def __init__(self, path: Path) -> None:
@@ -60,13 +67,13 @@ class StreamedLog:
         self._close()
 
     def begin(self, run: "Run") -> None:
-        """A motion begins. What is unfinished so far stays until its first block is there."""
+        """Start a motion. An earlier unfinished log stays until the first block is written."""
         self._close()
         self.run, self.rows, self._tails = run, 0, {}
 
     def add(self, block: "Trajectory") -> None:
         """Append a block, and flush it."""
-        with held(), self._errors_told():
+        with held(), self._os_errors_as_log_errors():
             if self._file is None:
                 self._create(block)
             else:
@@ -75,8 +82,8 @@ class StreamedLog:
                 self._file.flush()
 
     def finish(self, run: "Run") -> None:
-        """Put the log of the answer in its place; nothing else is left."""
-        with held(), self._errors_told():
+        """Put the finished log in its place, and remove the unfinished one."""
+        with held(), self._os_errors_as_log_errors():
             if self.rows == 0 or run.trajectory is None or run.scenario.accuracy is not None:
                 self._close()
                 write_log(run, self.path)
@@ -89,13 +96,13 @@ class StreamedLog:
         with self._new() as new:
             with h5py.File(new, "w", libver=VERSIONS, locking=False) as file:
                 file.attrs.update(attributes_of(self.run, complete=False))
-                write_what_was_asked(file, self.run.scenario)
+                write_scenario(file, self.run.scenario)
                 write_equilibria(file, self.run)
                 columns = columns_of(block)
                 scales = {"time": columns.pop("time")} | scales_of(self.run.scenario, columns)
                 begin_columns(file.create_group("trajectory"), scales, columns, GROUPS["trajectory"])
                 self._append(file, block)
-            in_place(new, self.part)
+            move_into_place(new, self.part)
         file = h5py.File(self.part, "r+", libver=VERSIONS, locking=False)
         file.swmr_mode = True
         self._file = file
@@ -118,11 +125,11 @@ class StreamedLog:
                 del file["equilibria"]
                 write_equilibria(file, run)
                 file.attrs.update(attributes_of(run))
-            in_place(new, self.path)
+            move_into_place(new, self.path)
 
     @contextmanager
     def _new(self) -> Iterator[Path]:
-        """The name of a file that is still made; it is gone afterwards."""
+        """Name of a temporary file, which is removed afterwards."""
         new = self.path.with_name(self.path.name + ".new")
         try:
             yield new
@@ -137,7 +144,7 @@ class StreamedLog:
                 file.close()
 
     @contextmanager
-    def _errors_told(self) -> Iterator[None]:
+    def _os_errors_as_log_errors(self) -> Iterator[None]:
         try:
             yield
         except OSError as error:
@@ -149,7 +156,7 @@ class StreamedLog:
 
 
 def _append(dataset: h5py.Dataset, values: np.ndarray, rows: int, tail: np.ndarray | None) -> np.ndarray:
-    """Append values to a dataset with so many rows, of which ``tail`` fills no chunk; returns the new tail.
+    """Append values to a dataset of ``rows`` rows, and return the rows that fill no chunk: the new ``tail``.
 
     Chunks are written as they are, past HDF5's conversions, which take ten times as long. The rows of a
     chunk that is written once more are the same.
@@ -168,7 +175,7 @@ def _append(dataset: h5py.Dataset, values: np.ndarray, rows: int, tail: np.ndarr
 
 
 def _keep_room(path: Path, file: h5py.File, block: "Trajectory") -> None:
-    """Take the room that a block needs from the file system, before HDF5 does and gets a part of it."""
+    """Reserve disk space for a block, before HDF5 takes it and gets only a part of it."""
     if not hasattr(os, "posix_fallocate"):
         return
     chunks = block.time.size // CHUNK + 2

@@ -1,7 +1,7 @@
-"""HDF5 files that were never closed, as a run that was killed leaves them, opened as if they had been.
+"""Opens HDF5 files that were never closed, as a run that was killed leaves them.
 
 Their first bytes, the superblock, say that a writer is at work. HDF5 then opens them for readers beside a
-writer, who wait for it without end where the file is spoiled. Here the whole file is read into memory and
+writer, who wait for it without end if the file is damaged. Here the whole file is read into memory and
 its superblock put right there, as the tool h5clear does on disk (HDF5 File Format Specification, version
 3.0, sec. II.A). Nothing that was flushed by a writer for such readers is lost by that.
 """
@@ -14,12 +14,12 @@ import h5py
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 VERSION, FLAGS, END_OF_FILE, CHECKSUM = 8, 11, 28, 44
-"""Places in a superblock of version 3 whose addresses have 8 bytes."""
+"""Byte offsets in a superblock of version 3 whose addresses have 8 bytes."""
 SIZE = CHECKSUM + 4
 
 
 def is_unclosed(path: Path) -> bool:
-    """Whether it is an HDF5 file that its writer has not closed."""
+    """Whether a file is an HDF5 file that its writer has not closed."""
     with path.open("rb") as file:
         start = file.read(SIZE)
     known = len(start) == SIZE and start.startswith(SIGNATURE) and start[VERSION:FLAGS] == b"\x03\x08\x08"
@@ -27,7 +27,7 @@ def is_unclosed(path: Path) -> bool:
 
 
 def open_unclosed(path: Path) -> h5py.File:
-    """The file as it is at this moment, in memory. Raises ``OSError`` where HDF5 finds it spoiled."""
+    """Open a copy of the file in memory. Raises ``OSError`` if HDF5 finds it damaged."""
     content = bytearray(path.read_bytes())
     if _checksum(bytes(content[:CHECKSUM])) != int.from_bytes(content[CHECKSUM:SIZE], "little"):
         raise OSError("its superblock is spoiled")
@@ -41,24 +41,24 @@ def _checksum(key: bytes) -> int:
     """Jenkins's lookup3, "hashlittle", with which HDF5 checks its metadata (Jenkins 2006)."""
     a = b = c = (0xDEADBEEF + len(key)) & 0xFFFFFFFF
     words = struct.unpack(f"<{-(-len(key) // 12) * 3}I", key.ljust(-(-len(key) // 12) * 12, b"\0"))
-    for place in range(0, len(words) - 3, 3):
-        a, b, c = (_sum(*pair) for pair in zip((a, b, c), words[place : place + 3], strict=True))
-        a, b, c = _mixed(a, b, c)
+    for start in range(0, len(words) - 3, 3):
+        a, b, c = (_sum(*pair) for pair in zip((a, b, c), words[start : start + 3], strict=True))
+        a, b, c = _mix(a, b, c)
     a, b, c = (_sum(*pair) for pair in zip((a, b, c), words[-3:], strict=True))
-    return _final(a, b, c)
+    return _mix_finally(a, b, c)
 
 
-def _mixed(a: int, b: int, c: int) -> tuple[int, int, int]:
-    for turn in (4, 6, 8, 16, 19, 4):
-        a = _difference(a, c) ^ _turned(c, turn)
+def _mix(a: int, b: int, c: int) -> tuple[int, int, int]:
+    for bits in (4, 6, 8, 16, 19, 4):
+        a = _difference(a, c) ^ _rotate_left(c, bits)
         c = _sum(c, b)
         a, b, c = b, c, a
     return a, b, c
 
 
-def _final(a: int, b: int, c: int) -> int:
-    for turn in (14, 11, 25, 16, 4, 14, 24):
-        c = _difference(c ^ b, _turned(b, turn))
+def _mix_finally(a: int, b: int, c: int) -> int:
+    for bits in (14, 11, 25, 16, 4, 14, 24):
+        c = _difference(c ^ b, _rotate_left(b, bits))
         a, b, c = b, c, a
     return b
 
@@ -71,5 +71,5 @@ def _difference(x: int, y: int) -> int:
     return (x - y) & 0xFFFFFFFF
 
 
-def _turned(x: int, by: int) -> int:
+def _rotate_left(x: int, by: int) -> int:
     return ((x << by) | (x >> (32 - by))) & 0xFFFFFFFF

@@ -1,4 +1,4 @@
-"""A run as a log, written whole: it is complete or not there."""
+"""Writes a run as a log in one go: the log is complete or missing."""
 
 import platform
 from collections.abc import Mapping, Sequence
@@ -24,7 +24,7 @@ def write_log(run: "Run", path: Path) -> None:
     """Write a run. Raises ``LogError`` if the file cannot be written; then nothing is left behind."""
     with whole_file(path) as file:
         file.attrs.update(attributes_of(run))
-        write_what_was_asked(file, run.scenario)
+        write_scenario(file, run.scenario)
         write_equilibria(file, run)
         if run.trajectory is not None:
             group = file.create_group("trajectory")
@@ -35,7 +35,7 @@ def write_log(run: "Run", path: Path) -> None:
 
 
 def attributes_of(run: "Run", complete: bool = True) -> dict[str, Any]:
-    """Attributes of the file: what was asked, what came of it, and what made it."""
+    """Attributes of the file: the study, its outcome, and the versions of the program."""
     attributes: dict[str, Any] = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
@@ -69,14 +69,14 @@ def _versions() -> str:
     return ", ".join(["python " + platform.python_version(), *(f"{p} {version(p)}" for p in packages)])
 
 
-def write_what_was_asked(file: h5py.File, scenario: Scenario) -> None:
-    """The scenario's tables and its arm."""
+def write_scenario(file: h5py.File, scenario: Scenario) -> None:
+    """Write the scenario's tables and its arm."""
     _write_tables(file.create_group("tables"), scenario.tables)
     _write_arm(file.create_group("arm"), scenario)
 
 
 def _write_tables(group: h5py.Group, tables: Mapping[str, str]) -> None:
-    """Each text in UTF-8, as it was read; its name in the scenario, which may be a path, as an attribute."""
+    """Write each text in UTF-8, as it was read; its name in the scenario, perhaps a path, is an attribute."""
     for number, (name, text) in enumerate(tables.items(), start=1):
         dataset = group.create_dataset(str(number), data=np.frombuffer(text.encode(), dtype=np.uint8))
         dataset.attrs["file"] = name
@@ -104,9 +104,9 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
 
 
 def write_equilibria(file: h5py.File, run: "Run") -> None:
-    """Those that were found, if any, with their numbers in the study, and in a motion their times.
+    """Write the equilibria that were found, with their numbers in the study, and in a motion their times.
 
-    Unstable ones that a search has left stand before the one that it found, under the same number.
+    Unstable ones that a search has left precede the one that it found, with the same number.
     """
     asked = run.static_path or run.equilibria
     rows = [
@@ -116,7 +116,7 @@ def write_equilibria(file: h5py.File, run: "Run") -> None:
         return
     numbers, points = np.array([number for number, _ in rows]), [row for _, row in rows]
     names = [name for name in GROUPS["equilibria"] if hasattr(points[0], name)]
-    columns = {name: values for name in names if (values := _stacked(points, name)) is not None}
+    columns = {name: values for name in names if (values := _stack(points, name)) is not None}
     if (study := run.scenario.study.motion) is not None:
         ends = np.array([0.0, study.duration])
         columns["time"] = (run.trajectory.time if run.static_path and run.trajectory else ends)[numbers]
@@ -124,8 +124,8 @@ def write_equilibria(file: h5py.File, run: "Run") -> None:
     write_columns(file.create_group("equilibria"), scales, columns, GROUPS["equilibria"])
 
 
-def _stacked(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:
-    """None where it is not known of every point."""
+def _stack(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:
+    """The values of all points; None if one of them has none."""
     values = [getattr(point, name) for point in points]
     return None if any(value is None for value in values) else np.array(values)
 
@@ -138,7 +138,7 @@ def columns_of(trajectory: "Trajectory") -> dict[str, np.ndarray]:
 
 
 def scales_of(scenario: Scenario, columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The dimensions of the datasets beside the first one."""
+    """The scales of the datasets' dimensions after the first one."""
     arm = scenario.scene.arm
     scales = {
         "segment": np.arange(1, arm.segments + 1),

@@ -1,4 +1,4 @@
-"""The scenario of a file's tables, once each of them is checked."""
+"""Builds the scenario from the checked tables of its file."""
 
 from dataclasses import replace
 from typing import Any
@@ -39,7 +39,7 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
         if load.factor is not None
     )
     if is_ramp:
-        repeated = _repeated((*drives, *factors))
+        repeated = _repeat_single((*drives, *factors))
         drives, factors = repeated[: len(drives)], repeated[len(drives) :]
     motion = _base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
@@ -115,7 +115,7 @@ def _cable(cable: CableTable, numbered: str) -> Cable:
 
 
 def _drive(cable: CableTable) -> tuple[Any, str]:
-    """What drives a cable, its tension or its displacement; and which of the two it is."""
+    """The input of a cable, and its name: tension or cable_displacement."""
     given = {"tension": cable.tension, "cable_displacement": cable.cable_displacement}
     known = [name for name, value in given.items() if value is not None]
     where = "[[cables]]" if cable.name is None else f"[[cables]] '{cable.name}'"
@@ -165,6 +165,6 @@ def _load(load: LoadTable) -> DiskLoad:
     return DiskLoad(load.disk, load.force, load.moment, driven=driven, follower=load.follower)
 
 
-def _repeated(ramps: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
+def _repeat_single(ramps: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
     longest = max((len(values) for values in ramps), default=0)
     return tuple(values * longest if len(values) == 1 else values for values in ramps)

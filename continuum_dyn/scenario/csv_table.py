@@ -14,13 +14,14 @@ from continuum_dyn.scenario.text import MAX_FILE_SIZE, read_text
 from statics.errors import InputError
 
 MAX_ROWS = 1_000_000
+"""Largest number of rows of a table, periods included."""
 LARGEST = 1e30
-"""Size of the largest number in a table."""
+"""Largest size of a number in a table."""
 
 
 @dataclass(frozen=True)
 class Tables:
-    """The tables of a scenario: ``texts`` of those asked for, by name; ``read`` gives the others."""
+    """The tables of a scenario: ``texts`` of those read so far, by name; ``read`` reads another."""
 
     read: Callable[[str], str]
     texts: dict[str, str] = field(default_factory=dict)
@@ -68,7 +69,7 @@ def read_table(name: str, text: str, quantity: str, periods: int = 1) -> Table:
         raise InputError(
             f"table '{name}', row {negative[0]}: a cable cannot push; read {values[negative[0] - 1][1]:g}"
         )
-    rows = _repeated(name, values, periods)
+    rows = _repeat(name, values, periods)
     try:
         return Table(tuple(t for t, _ in rows), tuple(tau for _, tau in rows))
     except InputError as error:
@@ -79,8 +80,8 @@ def read_table(name: str, text: str, quantity: str, periods: int = 1) -> Table:
         raise InputError(f"table '{name}', row {row}: {detail['msg']}; read {detail['input']!r}") from error
 
 
-def _repeated(name: str, rows: list[tuple[float, float]], periods: int) -> list[tuple[float, float]]:
-    """The rows of all periods. Where a period ends in another value than it began the table jumps.
+def _repeat(name: str, rows: list[tuple[float, float]], periods: int) -> list[tuple[float, float]]:
+    """The rows of all periods. If a period ends with another value than it began with, the table jumps.
 
     A jump is a pair of rows whose times are neighbours in floating point, and stays one.
     """

@@ -1,4 +1,4 @@
-"""What a scenario expects of its own run: the table [expect], by which a hard case is judged."""
+"""Expectations of a scenario's run: the table [expect], by which a hard case is judged."""
 
 from dataclasses import field
 from typing import Annotated
@@ -13,7 +13,7 @@ from statics.support.checked import STRICT, NonNegative, Positive
 
 @dataclass(frozen=True, config=STRICT)
 class Expected:
-    """How a motion must end, by which methods, and what is special about its bounds: see ``bounds.py``.
+    """Outcome of a motion, the methods that reach it, and exceptions to ``experiments/bounds.py``.
 
     Errors are measured against the last method of ``steps``, at tighter tolerances.
     """
@@ -51,9 +51,9 @@ class Expected:
 
 @dataclass(frozen=True, config=STRICT)
 class Expect(Expected):
-    """The same, and what is expected of the scenario with the effect ``extension``, or without it.
+    """Expectations of the scenario as it is, and with the effect ``extension`` added or left out.
 
-    A scenario is run so where that is given: with extension if it is not among its effects, else without.
+    If one of the latter is given, the scenario is run in that way, too.
     """
 
     with_extension: Annotated[

@@ -1,6 +1,6 @@
-"""What is wrong in a scenario file, one line for each place.
+"""Messages about mistakes in a scenario file, one line for each place.
 
-A line says where, in the file's own words, what was read, what is allowed there and the nearest match.
+A line names the place in the file's own words, what was read, what is allowed there and the nearest match.
 """
 
 from dataclasses import fields as dataclass_fields
@@ -26,6 +26,7 @@ from statics.arm import Payload
 from statics.errors import did_you_mean
 
 MAX_SHOWN = 12
+"""Largest number of mistakes that a message lists."""
 
 _KEYS: dict[str, Any] = {
     "": ScenarioFile,
@@ -81,12 +82,12 @@ def _one(detail: Any) -> str:
 
 
 def _short(read: str) -> str:
-    """What was read, or its beginning."""
+    """The value that was read, cut after 60 characters."""
     return read if len(read) <= 60 else f"{read[:57]}..."
 
 
 def _where(place: list[str]) -> str:
-    """How the place is written in the file: [arm] disks, [[cables]] 1 tension."""
+    """The place as it is written in the file: [arm] disks, [[cables]] number 1 tension."""
     if not place:
         return "(top level)"
     head, *rest = place

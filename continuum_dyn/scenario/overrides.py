@@ -1,4 +1,4 @@
-"""Changes to a scenario that are made where it is run: ``arm.disks=16``.
+"""Changes to a scenario from the command line: ``arm.disks=16``.
 
 An override is a line of TOML: a dotted key, and a value. Its key leads through the tables of the file, and
 through a list such as [[cables]] by the names of its tables.
@@ -21,7 +21,7 @@ LISTS = [name for name, field in ScenarioFile.model_fields.items() if get_origin
 
 _KEY_AND_VALUE = re.compile(r"""((?:"[^"]*"|'[^']*'|[^"'=])+)=(.+)""")
 _WORD = re.compile(r"[A-Za-z][\w./-]*")
-"""What is taken as text without quotes, which a shell would eat."""
+"""Text that needs no quotes, which a shell would remove."""
 
 
 @dataclass(frozen=True)
@@ -34,23 +34,23 @@ class Override:
     value: Any
 
 
-def overridden(text: str, name: str, overrides: Sequence[str]) -> str:
-    """The text of the scenario ``name`` with changes: TOML written anew, with a comment that tells of them.
+def apply_overrides(text: str, name: str, overrides: Sequence[str]) -> str:
+    """Apply changes to the text of the scenario ``name``: TOML written anew, the changes listed in a comment.
 
-    Its title tells of them, too, unless it is changed itself. Raises ``InputError`` for what is no override
-    or leads nowhere, ``tomllib.TOMLDecodeError`` for a text that is not TOML.
+    They are also appended to its title, unless a change sets it. Raises ``InputError`` for text that is not
+    an override or names no table, ``tomllib.TOMLDecodeError`` for a scenario that is not TOML.
     """
     if not overrides:
         return text
     content = tomllib.loads(text)
     title = f"{content.pop('title', name)}, {', '.join(overrides)}"
     content = {"title": shorten(title, LONGEST_LINE, placeholder=" ...")} | content
-    for change in map(_parsed, overrides):
-        _table(content, change)[change.key] = change.value
+    for change in map(_parse, overrides):
+        _table_to_change(content, change)[change.key] = change.value
     return "\n".join([f"# {name}, with", *(f"#   {override}" for override in overrides), toml_text(content)])
 
 
-def _parsed(text: str) -> Override:
+def _parse(text: str) -> Override:
     parts = _KEY_AND_VALUE.fullmatch(text) if text.isprintable() else None
     if parts is None:
         raise InputError(
@@ -88,14 +88,14 @@ def _value(value: str, text: str) -> Any:
         ) from error
 
 
-def _table(content: dict[str, Any], change: Override) -> dict[str, Any]:
-    """The table whose key is changed; tables on the way are made where they are not there."""
+def _table_to_change(content: dict[str, Any], change: Override) -> dict[str, Any]:
+    """The table whose key is changed; missing tables on the path to it are added."""
     place: Any = content
     for depth, word in enumerate(change.tables):
         if isinstance(place, dict):
             place = place.setdefault(word, [] if depth == 0 and word in LISTS else {})
         elif _holds_tables(place):
-            place = _named(word, place, change, depth)
+            place = _find_table(word, place, change, depth)
         else:
             raise _no_table(change, depth, place)
     if not isinstance(place, dict):
@@ -116,8 +116,8 @@ def _no_table(change: Override, depth: int, place: Any) -> InputError:
     )
 
 
-def _named(word: str, tables: list[Any], change: Override, depth: int) -> dict[str, Any]:
-    """The table of that name in a list; one without a name is called cable_1, load_2 or the like."""
+def _find_table(word: str, tables: list[Any], change: Override, depth: int) -> dict[str, Any]:
+    """Find the table of that name in a list; one without a name is called cable_1, load_2 or the like."""
     header = change.tables[depth - 1]
     kind = header.removesuffix("s")
     known = {

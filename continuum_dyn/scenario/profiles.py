@@ -1,4 +1,4 @@
-"""What drives a motion over time, as data: pieces between corners, evaluated in compiled code.
+"""Profiles of the inputs over time, as data: pieces between corners, evaluated in compiled code.
 
 A piece is a row (start, value, slope, amplitude, angular frequency, phase) and means
 
@@ -19,7 +19,7 @@ from statics.errors import InputError
 from statics.support.checked import STRICT, NonNegative, Positive
 
 TIME_RESOLUTION = 1e-300
-"""Rows of a table closer than this (s) would have slopes beyond floating point."""
+"""Shortest time between rows of a table, s; slopes over less are beyond floating point."""
 
 Value = Annotated[float, Field(description="value at all times, in the unit of what is driven")]
 Before = Annotated[float, Field(description="value until then, in the unit of what is driven")]
@@ -134,7 +134,7 @@ def _check_order(start: float, end: float) -> None:
 
 
 def _from_rest_to_rest(ramp: Ramp | SmoothRamp, rise: Piece) -> list[Piece]:
-    """The rise between the values that hold before it, if there is time before it, and after it."""
+    """The rise between the constant values before it, if it starts after zero, and after it."""
     rising = [rise, straight(ramp.end, ramp.after)]
     return [straight(0.0, ramp.before), *rising] if ramp.start > 0 else rising
 
@@ -195,8 +195,8 @@ class Table:
         return [straight(*first), *between, straight(*last)]
 
 
-def lowest(profile: "Profile") -> float:
-    """The least value that a profile takes, or comes near to."""
+def lower_bound(profile: "Profile") -> float:
+    """A lower bound of a profile's values, which it reaches or comes near to."""
     if isinstance(profile, Sine):
         return profile.mean - abs(profile.amplitude)
     if isinstance(profile, Table):
@@ -215,8 +215,8 @@ PROFILES: dict[str, type[Profile]] = {
 }
 
 
-class InPieces(Protocol):
-    """A profile, or what follows from one."""
+class Piecewise(Protocol):
+    """A profile, or a rate that follows from one."""
 
     @property
     def initial(self) -> float:
@@ -224,5 +224,5 @@ class InPieces(Protocol):
         ...
 
     def pieces(self) -> list[Piece]:
-        """What it is from the start of each piece on."""
+        """The pieces, in order of their starts."""
         ...

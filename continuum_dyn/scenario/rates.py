@@ -4,18 +4,21 @@ import dataclasses
 from itertools import pairwise
 from math import inf, pi, sin
 
-from continuum_dyn.scenario.profiles import InPieces, Piece, Profile, Sine, straight
+from continuum_dyn.scenario.profiles import Piece, Piecewise, Profile, Sine, straight
 from statics.errors import InputError
 
 JUMP, TURN = 1e-12, 1e-4
-"""Parts of the largest value and slope whose jumps count as none: a phase of 1.5708 is a quarter turn."""
+"""Largest jumps of value and slope that count as none, in parts of the largest value and slope.
+
+A phase of 1.5708 is a quarter turn.
+"""
 
 
 @dataclasses.dataclass(frozen=True)
 class Rate:
     """The time derivative of a smooth profile, piece by piece; zero at the equilibrium before the start."""
 
-    of: InPieces
+    of: Piecewise
     initial: float = 0.0
 
     def pieces(self) -> list[Piece]:
@@ -30,7 +33,7 @@ def derivative(piece: Piece) -> Piece:
 
 
 def check_smooth(profile: Profile, name: str, unit: str) -> None:
-    """Raises ``InputError`` where what follows the profile from rest would be hit: at a jump, at a corner."""
+    """Raise ``InputError`` if a body could not follow the profile from rest: at a jump or a corner."""
     run = _from_rest(profile)
     size = max(abs(piece[1]) + abs(piece[3]) for piece in run)
     speed = max(abs(piece[2]) + abs(piece[3] * piece[4]) for piece in run)

@@ -1,6 +1,6 @@
-"""Scenario files: TOML in, checked at the door, a scenario out.
+"""Reads and checks scenario files: TOML in, a scenario out.
 
-A scenario is data; no text of it is ever evaluated. All errors of a file are reported at once, each
+A scenario is data; no text of it is ever evaluated. All errors of a file are reported together, each
 with its place, what was read, and the nearest allowed word.
 """
 
@@ -17,7 +17,7 @@ from continuum_dyn.scenario.building import build
 from continuum_dyn.scenario.csv_table import Tables, table_text
 from continuum_dyn.scenario.expect import Expect
 from continuum_dyn.scenario.messages import explain
-from continuum_dyn.scenario.overrides import overridden
+from continuum_dyn.scenario.overrides import apply_overrides
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import FIXED_STEP
 from continuum_dyn.scenario.tables import ScenarioFile
@@ -25,9 +25,9 @@ from continuum_dyn.scenario.text import read_text
 from statics.errors import InputError
 
 MAX_FILE_SIZE = 5_000_000
-"""Of a scenario, bytes; long tables have files of their own."""
+"""Largest size of a scenario file, bytes; long tables have files of their own."""
 SMALLEST, LARGEST = 1e-60, 1e30
-"""Sizes of numbers of a scenario; the inertia of a disk of 1 nm is of 1e-44 kg m^2."""
+"""Smallest and largest size of a number other than 0; the inertia of a disk of 1 nm is of 1e-44 kg m^2."""
 
 
 def load_scenario(path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
@@ -40,7 +40,7 @@ def load_scenario(path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
 
 
 def load_expecting(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Scenario, Expect | None]:
-    """The scenario, and what it expects of its run. Raises ``InputError`` like ``load_scenario``."""
+    """Load a scenario with its expectations. Raises ``InputError`` like ``load_scenario``."""
     path = Path(path)
     text = read_text(path, MAX_FILE_SIZE)
     return parse(text, path, lambda name: table_text(path, name), overrides)
@@ -49,13 +49,13 @@ def load_expecting(path: str | Path, overrides: Sequence[str] = ()) -> tuple[Sce
 def parse(
     text: str, path: Path, text_of_table: Callable[[str], str], overrides: Sequence[str] = ()
 ) -> tuple[Scenario, Expect | None]:
-    """The scenario of a file's text, and what it expects; ``path`` is for titles and messages.
+    """Parse the text of a scenario file; ``path`` is for titles and messages.
 
-    ``text_of_table`` gives the text of a table by the name that the scenario calls it. Raises ``InputError``
+    ``text_of_table`` reads a table by its name in the scenario. Raises ``InputError``
     like ``load_scenario``.
     """
     try:
-        text = overridden(text, path.name, overrides)
+        text = apply_overrides(text, path.name, overrides)
         content = tomllib.loads(text)
         _check_sizes(content, "")
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
@@ -87,7 +87,7 @@ def _check_sizes(content: Any, place: str) -> None:
 
 
 def _is_physical(size: float) -> bool:
-    """Also true of what is no finite number: that is told where it is read."""
+    """Whether a number can be computed with; pydantic reports those that are not finite."""
     return size == 0 or SMALLEST <= size <= LARGEST or not size < inf
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_dyn.scenario.profiles import Constant, InPieces, Profile, lowest
+from continuum_dyn.scenario.profiles import Constant, Piecewise, Profile, lower_bound
 from continuum_dyn.scenario.rates import Rate, check_smooth
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import MotionStudy, Study
@@ -32,9 +32,9 @@ class Scenario:
     displacements (m) of a cable that is driven by its length;
     ``text`` is the file that it was read from, ``tables`` those of the CSV files beside it, by name. With
     ``accuracy`` the solver's tolerances are the program's to choose; with ``chooses_mesh`` the number of the
-    arm's sub-segments, too. ``load_factors`` has likewise a profile or a list for each driven load,
+    arm's sub-segments, too. ``load_factors`` has a profile or a list for each driven load,
     ``base_motion`` profiles of x, y (m) and angle
-    (rad) of a base that moves. Raises ``InputError`` where these do not fit.
+    (rad) of a base that moves. Raises ``InputError`` if these do not fit.
     """
 
     scene: Scene
@@ -62,9 +62,9 @@ class Scenario:
             self._check_base()
         for cable, profile in zip(self.scene.arm.cables, self.drives, strict=False):
             name, pulled = cable.name, not cable.driven_by_length
-            if pulled and not isinstance(profile, tuple) and lowest(profile) < 0:
+            if pulled and not isinstance(profile, tuple) and (least := lower_bound(profile)) < 0:
                 raise InputError(
-                    f"cable '{name}': a cable cannot push; its tension comes down to {lowest(profile):g} N."
+                    f"cable '{name}': a cable cannot push; its tension comes down to {least:g} N."
                 )
         if self.chooses_mesh and self.accuracy is None:
             raise InputError('subsegments = "auto" needs an accuracy to aim at. Add [accuracy] tip, in m.')
@@ -124,7 +124,7 @@ class Scenario:
             )
 
     @property
-    def profiles(self) -> tuple[InPieces, ...]:
+    def profiles(self) -> tuple[Piecewise, ...]:
         """Drives of a motion, or constants for an equilibrium, in the order of ``Scene.inputs``."""
         driven = (*self.drives, *self.load_factors)
         profiles = tuple(p for p in driven if not isinstance(p, tuple))
@@ -132,17 +132,17 @@ class Scenario:
             raise InputError(
                 f'lists of tensions or load factors belong to a "ramp" study; this is "{self.study.kind}".'
             )
-        return (*profiles, *self._others(profiles))
+        return (*profiles, *self._other_inputs(profiles))
 
-    def _others(self, driven: tuple[Any, ...]) -> tuple[InPieces, ...]:
+    def _other_inputs(self, driven: tuple[Any, ...]) -> tuple[Piecewise, ...]:
         """The base's motion, and the rates of cables that are driven by length."""
-        pose, motion = self._of_base
+        pose, motion = self._base_inputs
         drawn_in = (driven[number] for number in self.scene.driven_by_length)
         rates = (Constant(0.0) if isinstance(drive, tuple) else Rate(drive) for drive in drawn_in)
         return (*pose, *rates, *motion)
 
     @property
-    def _of_base(self) -> tuple[tuple[InPieces, ...], tuple[InPieces, ...]]:
+    def _base_inputs(self) -> tuple[tuple[Piecewise, ...], tuple[Piecewise, ...]]:
         """Pose of the base; and, if it moves, its velocities and accelerations."""
         arm = self.scene.arm
         if not arm.base_moves:
@@ -195,5 +195,5 @@ class Scenario:
     def initial_inputs(self) -> np.ndarray:
         """Inputs of the equilibrium that a study starts from, in the order of ``Scene.inputs``."""
         driven = (*self.drives, *self.load_factors)
-        given = (*driven, *self._others(driven))
+        given = (*driven, *self._other_inputs(driven))
         return np.array([t[0] if isinstance(t, tuple) else t.initial for t in given], dtype=float)

@@ -1,7 +1,7 @@
 """The JSON schema of scenario files, from the models that check them: editors complete and check by it.
 
-It knows tables, keys, types, ranges and words. What hangs together across a file, such as an anchor beyond
-the arm, is checked when the scenario is read.
+It knows tables, keys, types, ranges and words. Conditions across a file, such as an anchor within the
+arm, are checked when the scenario is read.
 """
 
 from typing import Any
@@ -14,39 +14,39 @@ from statics.quantities import QUANTITIES
 
 def json_schema() -> dict[str, Any]:
     """The schema of a scenario file, JSON Schema draft 2020-12."""
-    schema = ScenarioFile.model_json_schema(schema_generator=_OfToml)
+    schema = ScenarioFile.model_json_schema(schema_generator=_TomlSchema)
     schema["title"] = "continuum-dyn scenario"
     definitions = schema["$defs"]
     for table in (schema, *definitions.values()):
         for name, key in table.get("properties", {}).items():
             if "const" in key and name not in table.get("required", []):
                 table.setdefault("required", []).append(name)  # it tells one kind of table from the others
-            told = _of_table(key, definitions) or (table if "const" in key else None)
-            _describe(name, key, told)
+            table_schema = _table_schema(key, definitions) or (table if "const" in key else None)
+            _describe(name, key, table_schema)
     return schema
 
 
-class _OfToml(GenerateJsonSchema):
+class _TomlSchema(GenerateJsonSchema):
     """TOML knows no null: a key that may be None may be left out. A profile has one of the known names."""
 
     def nullable_schema(self, schema: Any) -> dict[str, Any]:
-        """That of what it is if it is there."""
+        """The schema of the value, without null."""
         return self.generate_inner(schema["schema"])
 
     def tagged_union_schema(self, schema: Any) -> dict[str, Any]:
-        """Those of the tables and numbers that it may be."""
+        """The schemas of the known tables and numbers."""
         known: Any = {tag: choice for tag, choice in schema["choices"].items() if tag != UNKNOWN_PROFILE}
         return super().tagged_union_schema(schema | {"choices": known})
 
     def default_schema(self, schema: Any) -> dict[str, Any]:
-        """Without a default of None, or of a table that may be left out."""
+        """The schema without a default of null or of a table: such keys may be left out."""
         made = super().default_schema(schema)
         if isinstance(made.get("default"), dict | None):
             made.pop("default", None)
         return made
 
 
-def _of_table(key: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any] | None:
+def _table_schema(key: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any] | None:
     """The schema of the table that is a key's value, or of those in its list; None if it holds no table."""
     reference = key.get("$ref") or key.get("items", {}).get("$ref", "")
     return definitions.get(reference.rpartition("/")[2])

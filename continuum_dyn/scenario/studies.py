@@ -1,4 +1,4 @@
-"""Studies: what a scenario computes of its scene."""
+"""Kinds of study: equilibrium, ramp, motion, step response."""
 
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 

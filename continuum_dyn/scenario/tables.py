@@ -1,4 +1,4 @@
-"""What a scenario file may hold: its tables, their keys and the types of their values."""
+"""Tables of a scenario file, their keys and the types of their values."""
 
 from typing import Annotated, Any, Literal
 
@@ -28,7 +28,7 @@ class TableFile(BaseModel):
 
 
 UNKNOWN_PROFILE = "profile"
-"""The tag of a profile of no known name; messages have it in the place that they name."""
+"""The tag of a profile of an unknown name; it is part of the place in messages."""
 
 
 def _drive_kind(value: Any) -> str:
@@ -39,7 +39,7 @@ def _drive_kind(value: Any) -> str:
 
 
 class UnknownProfile(BaseModel):
-    """Where a profile's name is not one of ours: only there to say so."""
+    """A profile of an unknown name, which is always refused."""
 
     profile: Annotated[str, Field(pattern="^(" + "|".join(PROFILES) + ")$")]
 
@@ -67,7 +67,7 @@ NumberOrProfile = Annotated[
     Annotated[float, Tag("number")] | Annotated[float, Tag("list")] | ProfileTable,
     Discriminator(_drive_kind),
 ]
-"""A list is not allowed, and told so as a number that it is not."""
+"""A list is refused with the message for a wrong number."""
 
 
 def _number_kind(value: Any) -> str:

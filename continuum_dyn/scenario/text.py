@@ -1,4 +1,4 @@
-"""Text files read from disk: refused where they are missing, too large or not text."""
+"""Text files read from disk, refused if they are missing, too large or not text."""
 
 import io
 from pathlib import Path
@@ -6,10 +6,11 @@ from pathlib import Path
 from statics.errors import InputError, did_you_mean
 
 MAX_FILE_SIZE = 50_000_000
+"""Largest size of a text file, bytes."""
 
 
 def read_text(path: Path, largest: int = MAX_FILE_SIZE) -> str:
-    """The file's text, of ``largest`` bytes at most.
+    """Read a text file of at most ``largest`` bytes.
 
     Raises ``InputError`` that names the file and, if it is missing, its neighbours.
     """

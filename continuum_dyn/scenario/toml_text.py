@@ -1,4 +1,4 @@
-"""TOML written from what was read of it: Python's standard library reads TOML only."""
+"""TOML written from the content of a TOML file: Python's standard library only reads it."""
 
 import json
 import re
@@ -31,7 +31,7 @@ def _assignments(table: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _key(name: str) -> str:
-    return name if _BARE_KEY.fullmatch(name) else _quoted(name)
+    return name if _BARE_KEY.fullmatch(name) else _quote(name)
 
 
 def _inline(value: Any) -> str:
@@ -41,9 +41,9 @@ def _inline(value: Any) -> str:
         return f"[{', '.join(map(_inline, value))}]"
     if isinstance(value, bool):
         return str(value).lower()
-    return _quoted(value) if isinstance(value, str) else str(value)
+    return _quote(value) if isinstance(value, str) else str(value)
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     """JSON's escapes are TOML's, but for the character that JSON does not escape."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -17,7 +17,7 @@ from continuum_dyn.integrators import METHODS, Budget, Monitor, check
 from continuum_dyn.integrators.methods import drive_frequency
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span, inputs_of, joined_spans
+from continuum_dyn.scenario.intervals import Interval, inputs_at, join_intervals
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
@@ -30,7 +30,7 @@ PART_OF_PERIOD = 1 / 20
 """Default step of a method with equal steps, in the shortest period of the arm or of its drive."""
 
 
-def with_step(dynamics: Dynamics, solver: Solver, intervals: list[Span], y: np.ndarray) -> Solver:
+def with_step(dynamics: Dynamics, solver: Solver, intervals: list[Interval], y: np.ndarray) -> Solver:
     """The solver's settings, with the default step of its method from rest at ``y`` if it takes one."""
     if not solver.has_fixed_step or solver.step is not None:
         return solver
@@ -40,28 +40,28 @@ def with_step(dynamics: Dynamics, solver: Solver, intervals: list[Span], y: np.n
     return replace(solver, step=PART_OF_PERIOD * 2.0 * np.pi / fastest)
 
 
-def warm_up(dynamics: Dynamics, solver: Solver, span: Span) -> None:
+def warm_up(dynamics: Dynamics, solver: Solver, interval: Interval) -> None:
     """Compile or load the kernels of the method, so that what follows is solving alone."""
     method = METHODS[solver.method]
-    brief = Span(span.start, span.start + BRIEF, span.pieces)
+    brief = Interval(interval.start, interval.start + BRIEF, interval.pieces)
     y = dynamics.state(np.zeros((dynamics.scene.arm.segments, dynamics.dofs)))
     dynamics.clearance(y)
     if method.on_chain:
         unwatched = Monitor(inspect=lambda _t, _y: None, budget=Budget(steps=1))
         integrate(dynamics, [brief], np.array([brief.start, brief.end]), y, solver, unwatched)
         return
-    dynamics.rate(span.start, y, span)
-    dynamics.observe(y[None, :], span.inputs(np.array([span.start])))
+    dynamics.rate(interval.start, y, interval)
+    dynamics.observe(y[None, :], interval.inputs(np.array([interval.start])))
     if method.needs_jacobian:
-        dynamics.jacobian(span.start, y, span)
+        dynamics.jacobian(interval.start, y, interval)
 
 
-def add_jump(dynamics: Dynamics, before: Span, span: Span, monitor: Monitor) -> None:
+def add_jump(dynamics: Dynamics, before: Interval, interval: Interval, monitor: Monitor) -> None:
     """Add the energy that a jump of a cable's displacement puts into its stretch to the input work."""
     if not dynamics.scene.driven_by_length:
         return
     t, y = monitor.reached
-    inputs = np.concatenate([side.inputs(np.array([span.start])) for side in (before, span)])
+    inputs = np.concatenate([side.inputs(np.array([interval.start])) for side in (before, interval)])
     energy = dynamics.observe(np.tile(y, (2, 1)), inputs).ledger["elastic_energy"]
     y = y.copy()
     y[2 * dynamics.size] += energy[1] - energy[0]
@@ -86,7 +86,7 @@ def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome
 
 def integrate(
     dynamics: Dynamics,
-    intervals: list[Span],
+    intervals: list[Interval],
     samples: np.ndarray,
     y: np.ndarray,
     solver: Solver,
@@ -132,12 +132,14 @@ def integrate(
     return trajectory
 
 
-def _add_last_reached(gathered: Samples, joined: Sequence[Span], reached: tuple[float, np.ndarray]) -> None:
+def _add_last_reached(
+    gathered: Samples, joined: Sequence[Interval], reached: tuple[float, np.ndarray]
+) -> None:
     """Add the last acceptable state of a run that stopped early, unless it is a sample already."""
     t, y = reached
     if t > gathered.latest:
         time = np.array([t])
-        gathered.add(time, y[None, :], inputs_of(joined, time), np.zeros(1))
+        gathered.add(time, y[None, :], inputs_at(joined, time), np.zeros(1))
 
 
 def _count_work(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
@@ -156,20 +158,20 @@ def _count_work(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, i
     }
 
 
-def _group(dynamics: Dynamics, solver: Solver, intervals: list[Span]) -> list[list[Span]]:
+def _group(dynamics: Dynamics, solver: Solver, intervals: list[Interval]) -> list[list[Interval]]:
     """The intervals in groups that one solver may cross: without a jump of accelerations between them.
 
     If nodes carry no mass, a corner of the forces is such a jump.
     """
     if not METHODS[solver.method].crosses_corners or dynamics.scene.arm.massless_nodes:
-        return [[span] for span in intervals]
-    return joined_spans(intervals)
+        return [[interval] for interval in intervals]
+    return join_intervals(intervals)
 
 
 def _solve(
     dynamics: Dynamics,
     solver: Solver,
-    joined: list[Span],
+    joined: list[Interval],
     at: np.ndarray,
     monitor: Monitor,
     gathered: Samples,
@@ -195,7 +197,7 @@ def _solve(
         if acceptable and until > done:
             times = at[done:until]
             states = stepper.dense_output()(times).T
-            gathered.add(times, states, inputs_of(joined, times), _step_sizes(stepper, times))
+            gathered.add(times, states, inputs_at(joined, times), _step_sizes(stepper, times))
             done = until
     return stepper
 

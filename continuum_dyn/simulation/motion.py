@@ -8,14 +8,13 @@ import numpy as np
 
 from continuum_dyn.integrators import Budget, Choice, Monitor, choose
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import spans
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import inspector, integrate, warm_up, with_step
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
 from statics.equilibria import Equilibrium, StaticSolver
-from statics.errors import InputError
 from statics.ramp import ramp
 from statics.support.interruption import Interruption
 
@@ -30,7 +29,7 @@ class Motion:
     def __init__(self, scenario: Scenario) -> None:
         self.scenario, self.study = scenario, scenario.require_motion("only a motion can be integrated")
         self.statics, self.dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
-        self.intervals = spans(scenario.profiles, self.study.duration)
+        self.intervals = cut_into_intervals(scenario.profiles, self.study.duration)
         self.samples = np.linspace(0.0, self.study.duration, self.study.samples)
 
     @cached_property
@@ -41,9 +40,7 @@ class Motion:
 
     @cached_property
     def start(self) -> np.ndarray:
-        """State at the start, shape (size,). Raises ``InputError`` without an equilibrium to start from."""
-        if not self.rest.found:
-            raise InputError(f"the motion has no equilibrium to start from: {self.rest.outcome}.")
+        """State at the start, shape (size,); of no use if ``rest`` is not found."""
         return self.dynamics.state(self.rest.coordinates)
 
     @property

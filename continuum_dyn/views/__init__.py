@@ -1,1 +1,1 @@
-"""Views: what shows a log to people. They read logs, never a running solver."""
+"""Logs and answers come in, figures and playbacks go out; nothing here reads a running solver."""

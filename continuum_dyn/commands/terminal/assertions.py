@@ -1,4 +1,4 @@
-"""What a laboratory asks of a figure: ``--assert "settling_time_2 < 0.8"``. Nothing of it is evaluated."""
+"""Assertions about figures: ``--assert "settling_time_2 < 0.8"``. Nothing of them is evaluated as code."""
 
 import operator
 import re
@@ -12,7 +12,7 @@ from statics.errors import InputError, did_you_mean
 from statics.quantities import QUANTITIES
 
 NOT_HELD = 1
-"""Exit status where an assertion does not hold."""
+"""Exit status if an assertion does not hold."""
 COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     "<": operator.lt,
     "<=": operator.le,
@@ -25,7 +25,7 @@ HELP = 'Exit with 1 unless it holds, e.g. "{}"; NAME < NUMBER, or <=, >, >=; in 
 
 
 class Assertion(NamedTuple):
-    """That the figure of that name is less or more than a bound, in SI units."""
+    """An assertion that a figure is less or more than a bound, in SI units."""
 
     name: str
     comparison: str
@@ -36,7 +36,7 @@ class Assertion(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """Whether an assertion holds of what was found; of what was not found it does not."""
+    """An assertion, the value that was found, and whether it holds; it does not if there is no value."""
 
     assertion: Assertion
     value: float | None
@@ -44,16 +44,16 @@ class Verdict(NamedTuple):
 
     @property
     def record(self) -> dict[str, Any]:
-        """What ``--json`` prints of it."""
+        """The verdict as ``--json`` prints it."""
         return {"assert": str(self.assertion), "value": self.value, "holds": self.holds}
 
 
-def parsed(texts: Sequence[str], known: Sequence[str]) -> list[Assertion]:
-    """The assertions of those texts. Raises ``InputError`` for one that is none, or of an unknown name."""
-    return [_parsed(text, known) for text in texts]
+def parse(texts: Sequence[str], known: Sequence[str]) -> list[Assertion]:
+    """Parse assertions. Raises ``InputError`` if a text is not one, or names an unknown figure."""
+    return [_parse(text, known) for text in texts]
 
 
-def _parsed(text: str, known: Sequence[str]) -> Assertion:
+def _parse(text: str, known: Sequence[str]) -> Assertion:
     found = GRAMMAR.fullmatch(text)
     if found is None:
         raise InputError(
@@ -66,8 +66,8 @@ def _parsed(text: str, known: Sequence[str]) -> Assertion:
     return Assertion(name, comparison, float(bound))
 
 
-def judged(assertions: Sequence[Assertion], figures: Mapping[str, float | None]) -> list[Verdict]:
-    """Each assertion with the figure that was found."""
+def judge(assertions: Sequence[Assertion], figures: Mapping[str, float | None]) -> list[Verdict]:
+    """Judge each assertion by the figure that was found."""
     found = [(assertion, figures[assertion.name]) for assertion in assertions]
     return [
         Verdict(
@@ -78,21 +78,21 @@ def judged(assertions: Sequence[Assertion], figures: Mapping[str, float | None])
 
 
 def verdict_table(verdicts: Sequence[Verdict], missing: Mapping[str, str]) -> Any:
-    """Each assertion, whether it holds, and what was found instead."""
+    """A table of assertions: whether each holds, and the value found."""
     table = plain_table("\nAsked for", "assertion", "holds", "found")
     table.columns[2].justify, table.columns[2].overflow = "left", "fold"
     for assertion, value, holds in verdicts:
         unit = QUANTITIES[assertion.name].unit
-        told = (
+        value_text = (
             f"nothing: {missing[assertion.name]}"
             if value is None
             else f"{value:.6g}{'' if unit == '1' else ' ' + unit}"
         )
-        table.add_row(str(assertion), "yes" if holds else "no", told)
+        table.add_row(str(assertion), "yes" if holds else "no", value_text)
     return table
 
 
-def leave(verdicts: Sequence[Verdict]) -> None:
+def exit_unless_held(verdicts: Sequence[Verdict]) -> None:
     """Exit with ``NOT_HELD`` if an assertion does not hold."""
     if not all(verdict.holds for verdict in verdicts):
         raise typer.Exit(NOT_HELD)

@@ -1,4 +1,4 @@
-"""What each effect adds to a scenario, and what it could do without: tables of the command ``explain``."""
+"""Tables of the command ``explain``: the cost of each effect, and effects that could be left out."""
 
 from math import inf
 from textwrap import fill
@@ -18,7 +18,7 @@ LOWEST = 3
 
 
 def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
-    """What each effect adds to a segment, and to the range of rates about rest."""
+    """Print the operations that each effect adds to a segment, and its rates about rest."""
     from rich.console import Console
 
     from continuum_dyn.equations.operations import added_by_each, operations

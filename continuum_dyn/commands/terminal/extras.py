@@ -1,4 +1,4 @@
-"""What is installed only where it is asked for: the extras of the package."""
+"""Optional dependencies, the extras of the package."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,12 +10,12 @@ EXTRAS = {"matplotlib": "plots", "rerun": "rerun"}
 
 
 class MissingExtraError(ContinuumError, ImportError):
-    """What was asked for needs a package that is not installed."""
+    """A request needs a package that is not installed."""
 
 
 @contextmanager
-def extras_named() -> Iterator[None]:
-    """Raise ``MissingExtraError`` where an import within misses a package of an extra."""
+def naming_extras() -> Iterator[None]:
+    """Raise ``MissingExtraError`` if an import within misses a package of an extra."""
     try:
         yield
     except ModuleNotFoundError as error:

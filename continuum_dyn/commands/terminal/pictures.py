@@ -1,4 +1,4 @@
-"""Figures on their way to a file."""
+"""Writes figures to files."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DOTS_PER_INCH = 200
-"""Of pictures that are no vectors."""
+"""Resolution of raster pictures, dots per inch."""
 
 
 def save(figure: "Figure", path: Path) -> None:

@@ -41,7 +41,7 @@ def with_shared_options(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def shared(context: typer.Context, **options: Any) -> None:
         given = {name: options.pop(name) or context.find_root().params[name] for name in SHARED}
-        with _as_asked(**given, json=options.get("as_json", False)):
+        with _apply(**given, json=options.get("as_json", False)):
             command(**options)
 
     own = inspect.signature(command)
@@ -57,14 +57,14 @@ def with_shared_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @contextmanager
-def _as_asked(be_quiet: bool, be_verbose: bool, without_cache: bool, json: bool) -> Iterator[None]:
+def _apply(be_quiet: bool, be_verbose: bool, without_cache: bool, json: bool) -> Iterator[None]:
     if be_quiet and be_verbose:
         raise InputError("--quiet beside --verbose. Give one or the other.")
-    with ExitStack() as asked:
+    with ExitStack() as settings:
         if without_cache:
-            asked.enter_context(no_cache())
+            settings.enter_context(no_cache())
         if be_quiet:
-            asked.enter_context(quiet(json))
+            settings.enter_context(quiet(json))
         if be_verbose:
-            asked.enter_context(verbose())
+            settings.enter_context(verbose())
         yield

@@ -1,4 +1,4 @@
-"""What the commands share: a length or a time in its best unit, a plain table, progress, a folder."""
+"""Helpers of the commands: quantities in readable units, a plain table, progress, a folder."""
 
 import sys
 from collections.abc import Callable
@@ -48,7 +48,7 @@ def mode_row(mode: "Mode") -> tuple[str, str, str]:
     return f"{mode.frequency:.5g} Hz", f"{mode.damping_ratio:.3g}{kind}", f"{grows}{decay_time}"
 
 
-def wrapped(message: str) -> str:
+def wrap(message: str) -> str:
     """A message of the program with its lines broken at words, where standard error is a terminal."""
     if not sys.stderr.isatty():
         return message
@@ -58,7 +58,7 @@ def wrapped(message: str) -> str:
 
 
 def make_folder(folder: Path) -> None:
-    """Make the folder, or raise ``LogError`` if nothing can be written there."""
+    """Make a folder. Raises ``LogError`` if nothing can be written there."""
     probe = folder / ".writable"
     try:
         with held():
@@ -82,7 +82,7 @@ def plain_table(title: str, *columns: str) -> Any:
 
 
 def with_status(title: str, work: Callable[[Callable[[str], None]], Any]) -> Any:
-    """What ``work`` returns; a terminal shows what it tells the function that it is handed."""
+    """Run ``work``, whose argument shows progress on a terminal, and return its result."""
     from rich.console import Console
 
     console = Console(stderr=True)

@@ -1,4 +1,4 @@
-"""How much a command says: ``--quiet``, ``--verbose`` or neither."""
+"""Verbosity of the commands: ``--quiet``, ``--verbose`` or neither."""
 
 import logging
 import os
@@ -18,13 +18,13 @@ class _OnStandardError(logging.Handler):
 
 
 def shows_progress() -> bool:
-    """Whether progress is wanted: neither silence, nor lines that a progress bar would be in the way of."""
+    """Whether to show progress: neither with ``--quiet``, nor among the lines of ``--verbose``."""
     return LOG.getEffectiveLevel() == logging.WARNING
 
 
 @contextmanager
 def quiet(json: bool) -> Iterator[None]:
-    """Within, errors alone are said, and JSON where it is asked for."""
+    """Print errors only, and JSON if requested, within the block."""
     with ExitStack() as silence:
         silence.enter_context(_level(logging.ERROR))
         if not json:
@@ -35,7 +35,7 @@ def quiet(json: bool) -> Iterator[None]:
 
 @contextmanager
 def verbose() -> Iterator[None]:
-    """Within, what is compiled, where it is kept, and how long each stage takes is told on standard error."""
+    """Report compilation, kernel folder and the time of each stage on standard error, within the block."""
     handler = _OnStandardError()
     LOG.addHandler(handler)
     try:

@@ -10,11 +10,11 @@ PREFIXES = (("", 1.0), ("m", 1e-3), ("u", 1e-6), ("n", 1e-9), ("p", 1e-12))
 PREFIXED = ("m", "s", "J", "N", "W")
 """Units that take a prefix."""
 READS_WELL = 0.3
-"""Of a unit: the largest value on an axis from which on it is taken."""
+"""Smallest of the largest values on an axis in a unit that reads well."""
 
 
 class Axis(NamedTuple):
-    """How many of its units make an SI unit, and its label."""
+    """An axis: the number of its units in an SI unit, and its label."""
 
     per_si: float
     label: str

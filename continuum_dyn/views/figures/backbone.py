@@ -12,7 +12,7 @@ def base_pose(columns: Mapping[str, np.ndarray], rows: np.ndarray) -> tuple[np.n
 
 
 def poses(columns: Mapping[str, np.ndarray], rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Centres, shape (rows, disks + 1, 2), m, and normals of the base and of the disks."""
+    """Centres, shape (rows, disks + 1, 2), m, and unit vectors across the core, of base and disks."""
     disks = (columns[name][rows] for name in ("disk_x", "disk_y", "disk_theta"))
     x, y, theta = (np.hstack(both) for both in zip(base_pose(columns, rows), disks, strict=True))
     return np.stack([x, y], axis=-1), np.stack([-np.sin(theta), np.cos(theta)], axis=-1)

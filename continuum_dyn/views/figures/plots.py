@@ -1,4 +1,4 @@
-"""Figures of what is computed apart from a log: cost, modes, a paper's reproduction."""
+"""Figures of results without a log: cost, modes, a paper's reproduction."""
 
 from itertools import cycle, pairwise
 from typing import Any
@@ -16,13 +16,13 @@ from statics.quantities import QUANTITIES
 
 ARC_POINTS = 12
 MOST_SHAPES = 6
-"""Modes that are drawn."""
+"""Largest number of modes that are drawn."""
 SHAPE_REACH = 0.12
 """Largest displacement of a disk in the picture of a mode, in the arm's length."""
 SMALL_PART = 1e-9
 """Displacement (m) by which the core's points are differenced: a mode is drawn magnified, not bent double."""
 DISK_HEIGHT = 0.09
-"""Of the disks in the picture of a mode, in the arm's length."""
+"""Height of the disks in the picture of a mode, in arm lengths."""
 STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+"), ("-", "*")]
 """Lines and markers that can be told apart in black and white."""
 LAWS = {
@@ -30,7 +30,7 @@ LAWS = {
     "program": {"ls": "-", "color": "k", "lw": 1.2, "label": "the program"},
     "exact rod": {"ls": "", "marker": "o", "mfc": "none", "color": "C0", "ms": 7, "label": "exact rod"},
 }
-"""How the laws of a paper's reproduction are drawn."""
+"""Line style of each law in a paper's reproduction."""
 LIFTS_CLEARLY = 0.5
 """N; below it the paper's arm stays within a millimetre of the base's height."""
 PARTS_CLEARLY = 1.0
@@ -66,7 +66,7 @@ def cost(measured: Cost) -> Figure:
 
 
 def modes(found: RestModes) -> Figure:
-    """The arm at rest in grey and the shapes of its lowest modes: one way solid, the other dashed."""
+    """The arm at rest in grey and the shapes of its lowest modes: one extreme solid, the other dashed."""
     shown = found.modes[:MOST_SHAPES]
     columns = min(3, len(shown))
     rows = -(-len(shown) // columns)

@@ -1,4 +1,4 @@
-"""The picture of a ramp: the motion on its static path, its lag, and the loop there and back."""
+"""The figure of a ramp: the motion on its static path, its lag, and the hysteresis loop."""
 
 from typing import Any
 
@@ -6,17 +6,17 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from continuum_dyn.answers.loops import on_both_ways
-from continuum_dyn.answers.ramp import Path, RampAnswers
+from continuum_dyn.answers.loops import on_both_branches
+from continuum_dyn.answers.ramp import RampAnswers, TipPath
 from continuum_dyn.views.figures.axis_units import Axis, axis
 from statics.quantities import QUANTITIES
 
 MARKS = 12
-"""Places on the static path that are marked."""
+"""Number of marks on the static path."""
 
 
 def ramp(title: str, found: RampAnswers) -> Figure:
-    """The tip along its way against the drive, the loop opened up, the lag over time and against the rate."""
+    """The tip's path against the drive, the loop opened up, the lag over time and against the rate."""
     moves = found.motion is not None
     figure = Figure(figsize=(8.6, 6.4) if moves else (8.6, 3.6), layout="constrained")
     grid = figure.subplots(2 if moves else 1, 2, squeeze=False)
@@ -29,11 +29,11 @@ def ramp(title: str, found: RampAnswers) -> Figure:
     return figure
 
 
-def _along(found: RampAnswers, path: Path) -> np.ndarray:
-    """The tip along the straight way between the static ones at the least and the most of the drive, m."""
+def _along(found: RampAnswers, path: TipPath) -> np.ndarray:
+    """The tip along the straight line between its equilibria at the least and the largest drive, m."""
     ends = found.static.tip[[np.argmin(found.drive.values), np.argmax(found.drive.values)]]
-    way = ends[1] - ends[0]
-    return (path.tip - ends[0]) @ way / (np.hypot(*way) or 1.0)
+    line = ends[1] - ends[0]
+    return (path.tip - ends[0]) @ line / (np.hypot(*line) or 1.0)
 
 
 def _drive_axis(found: RampAnswers) -> Axis:
@@ -43,7 +43,7 @@ def _drive_axis(found: RampAnswers) -> Axis:
 
 def _draw_paths(axes: Any, found: RampAnswers) -> None:
     drive, rest = _drive_axis(found), _along(found, found.static)
-    place = axis("travel", rest, "tip along its way")
+    place = axis("travel", rest, "tip along its branch")
     values = drive.per_si * found.drive.values
     every = max(1, len(values) // MARKS) if found.motion is not None else 1
     axes.plot(
@@ -57,12 +57,12 @@ def _draw_paths(axes: Any, found: RampAnswers) -> None:
     )
     if found.motion is not None:
         axes.plot(values, place.per_si * _along(found, found.motion), "k-", lw=1.0, label="motion")
-    axes.set(xlabel=drive.label, ylabel=place.label, title="Path")
+    axes.set(xlabel=drive.label, ylabel=place.label, title="TipPath")
     axes.legend(fontsize=8)
 
 
 def _draw_loop(axes: Any, found: RampAnswers) -> None:
-    """Each way of the tip less the mean of both: a loop that is thin beside its length."""
+    """Draw each branch of the tip less the mean of both: the loop is thin beside its length."""
     drive = _drive_axis(found)
     axes.set(xlabel=drive.label, title="There and back")
     if found.loop is None:
@@ -73,7 +73,7 @@ def _draw_loop(axes: Any, found: RampAnswers) -> None:
         paths.insert(0, (found.motion, "in motion", "k-"))
     halves = []
     for path, _, _ in paths:
-        there, back = on_both_ways(found.loop, found.drive.values, _along(found, path))
+        there, back = on_both_branches(found.loop, found.drive.values, _along(found, path))
         halves.append(0.5 * (back - there))
     place = axis("travel", np.concatenate(halves), "tip, less the mean of both ways")
     for (_, label, look), half in zip(paths, halves, strict=True):
@@ -97,11 +97,11 @@ def _draw_lag(axes: Any, found: RampAnswers) -> None:
 
 
 def _draw_rates(axes: Any, found: RampAnswers) -> None:
-    """The lag of each way and run against its rate, and where a proportional one comes to the error."""
+    """Draw the lag of each branch and run against its rate, and where a proportional one meets the error."""
     rate, within, error = (found.figures[n] for n in ("ramp_rate", "quasistatic_rate", "quasistatic_error"))
     assert rate is not None
     assert error is not None
-    runs = np.array([(way.ramp_rate, way.tip_lag) for way in found.lags])
+    runs = np.array([(branch.ramp_rate, branch.tip_lag) for branch in found.lags])
     others = np.array(found.measured).reshape(-1, 2)
     lag = axis("tip_lag", [error, *others[:, 1]], "largest lag")
     if within is not None:

@@ -1,4 +1,4 @@
-"""The picture of a motion that settles."""
+"""The figure of a motion that settles."""
 
 from typing import Any
 
@@ -9,12 +9,12 @@ from continuum_dyn.answers.settling import BANDS, Settling
 from continuum_dyn.views.figures.axis_units import Axis, axis
 
 SHADES = ("0.90", "0.80", "0.68")
-"""Of the bands, widest first."""
+"""Greys of the bands, widest first."""
 DEEPEST = 1e-5
-"""Part of the travel down to which the distance from rest is drawn."""
+"""Smallest distance from rest that is drawn, in parts of the travel."""
 CURVE_POINTS = 2000
 ENOUGH = 3.0
-"""Longest settling times after which no more is drawn."""
+"""Largest time that is drawn, in longest settling times."""
 
 
 def settling(title: str, found: Settling) -> Figure:
@@ -74,7 +74,7 @@ def _until(found: Settling) -> float:
 
 
 def _envelope(found: Settling) -> tuple[np.ndarray, np.ndarray]:
-    """Times since the change began (s), and how far the fitted ring-down swings (m)."""
+    """Times since the change began (s), and the envelope of the fitted ring-down (m)."""
     assert found.ring_down is not None
     time = np.linspace(found.ring_down.start, found.time[-1], CURVE_POINTS)
     return time - found.change.begin, np.abs(found.ring_down.envelope(time))

@@ -1,4 +1,4 @@
-"""Colours of a playback, RRGGBBAA: of what is told apart, and of the curvature."""
+"""Colours of a playback, RRGGBBAA: a palette of distinct ones, and a scale for the curvature."""
 
 import numpy as np
 
@@ -36,7 +36,7 @@ _DIVERGING = np.array(
     dtype=float,
 )
 _TINT = 0.6
-"""Part of white in the last of several shades of a colour."""
+"""Largest part of white in the shades of a colour."""
 
 
 def diverging(values: np.ndarray, most: float) -> np.ndarray:
@@ -47,19 +47,19 @@ def diverging(values: np.ndarray, most: float) -> np.ndarray:
     return np.stack(channels, axis=-1).round().astype(np.uint8)
 
 
-def packed(rgb: np.ndarray) -> np.ndarray:
+def pack(rgb: np.ndarray) -> np.ndarray:
     """Opaque RRGGBBAA of red, green, blue, shape (..., 3)."""
     red, green, blue = np.moveaxis(rgb.astype(np.uint32), -1, 0)
     return (red << 24) | (green << 16) | (blue << 8) | np.uint32(0xFF)
 
 
-def told_apart(count: int) -> np.ndarray:
-    """So many colours of the palette."""
+def distinct_colors(count: int) -> np.ndarray:
+    """``count`` colours of the palette."""
     return PALETTE[np.arange(count) % len(PALETTE)]
 
 
 def shades(color: int, count: int) -> np.ndarray:
-    """A colour and lighter ones of its kind, for the several series of one run."""
+    """A colour and lighter shades of it, for the series of one run."""
     rgb = np.array([color >> 24 & 0xFF, color >> 16 & 0xFF, color >> 8 & 0xFF], dtype=float)
     white = np.linspace(0.0, _TINT, count)[:, None]
-    return packed((rgb + white * (255.0 - rgb)).round())
+    return pack((rgb + white * (255.0 - rgb)).round())

@@ -1,4 +1,4 @@
-"""What is drawn in a plane, as data, and its way into a recording."""
+"""Lines and arrows in a plane, as data, and how they are sent to a recording."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import rerun as rr
 
-from continuum_dyn.views.playback.story import Story
+from continuum_dyn.views.playback.playback import Playback
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Lines:
     """Line strips, shape (strips, points, 2), y up; ``width`` in points of the screen.
 
     ``color`` and ``width`` are one for all or one for each strip; ``labels`` one for each strip. ``counts``
-    says how many strips each frame has; what never changes has none.
+    has the number of strips in each frame; it is None for lines that never change.
     """
 
     strips: np.ndarray
@@ -41,34 +41,34 @@ Drawn = Lines | Arrows
 
 
 def every_frame(strips: np.ndarray) -> dict[str, Any]:
-    """The ``strips`` and ``counts`` of strips that each frame has as many of: (frames, strips, points, 2)."""
+    """``strips`` and ``counts`` of strips of shape (frames, strips, points, 2), as many in every frame."""
     return {"strips": strips.reshape(-1, *strips.shape[2:]), "counts": np.full(len(strips), strips.shape[1])}
 
 
 def corners(drawn: Drawn) -> np.ndarray:
-    """Lower left and upper right corner of all that is drawn at any time, shape (2, 2)."""
+    """Lower left and upper right corner of a drawing over all times, shape (2, 2)."""
     if isinstance(drawn, Lines):
         return np.array([drawn.strips.min(axis=(0, 1)), drawn.strips.max(axis=(0, 1))])
     ends = np.concatenate([drawn.place, drawn.place + drawn.vector])
     return np.array([ends.min(axis=0), ends.max(axis=0)])
 
 
-def when(story: Story, rows: np.ndarray) -> rr.TimeColumn:
-    """Those rows' places on the time line."""
-    times = story.times[rows]
-    if story.moves:
+def time_column(playback: Playback, rows: np.ndarray) -> rr.TimeColumn:
+    """The positions of those rows on the time line."""
+    times = playback.times[rows]
+    if playback.moves:
         # rerun truncates seconds given as floats, so they are rounded to ns here.
-        return rr.TimeColumn(story.timeline, duration=np.round(1e9 * times).astype("timedelta64[ns]"))
-    return rr.TimeColumn(story.timeline, sequence=times)
+        return rr.TimeColumn(playback.timeline, duration=np.round(1e9 * times).astype("timedelta64[ns]"))
+    return rr.TimeColumn(playback.timeline, sequence=times)
 
 
-def on_screen(points: np.ndarray) -> np.ndarray:
-    """A 2D view of rerun has y pointing down and cannot flip it (0.41), so y is drawn negated."""
+def flip_y(points: np.ndarray) -> np.ndarray:
+    """Negate y: a 2D view of rerun has y pointing down and cannot flip it (0.41)."""
     return points * np.array([1.0, -1.0])
 
 
 def send(recording: rr.RecordingStream, entity: str, drawn: Drawn, at: rr.TimeColumn | None = None) -> None:
-    """Send what is drawn, each frame at its time; what never changes has none."""
+    """Send a drawing, each frame at its time; without times it never changes."""
     if at is None:
         assert isinstance(drawn, Lines)
         recording.log(entity, rr.LineStrips2D.from_fields(**_style(drawn), **_strips(drawn)), static=True)
@@ -82,7 +82,7 @@ def send(recording: rr.RecordingStream, entity: str, drawn: Drawn, at: rr.TimeCo
 
 
 def _style(lines: Lines) -> dict[str, Any]:
-    """What all strips share."""
+    """The style that all strips share."""
     style: dict[str, Any] = {"draw_order": lines.order}
     if lines.labels is not None:
         style["show_labels"] = True
@@ -94,8 +94,8 @@ def _style(lines: Lines) -> dict[str, Any]:
 
 
 def _strips(lines: Lines) -> dict[str, Any]:
-    """The strips, and what each has of its own."""
-    strips: dict[str, Any] = {"strips": on_screen(lines.strips)}
+    """The strips, with their own colours, widths and labels."""
+    strips: dict[str, Any] = {"strips": flip_y(lines.strips)}
     if np.ndim(lines.color):
         strips["colors"] = np.asarray(lines.color, dtype=np.uint32)
     if np.ndim(lines.width):
@@ -112,5 +112,5 @@ def _send_arrows(recording: rr.RecordingStream, entity: str, arrows: Arrows, at:
         draw_order=arrows.order,
     )
     recording.log(entity, style, static=True)
-    columns = rr.Arrows2D.columns(origins=on_screen(arrows.place), vectors=on_screen(arrows.vector))
+    columns = rr.Arrows2D.columns(origins=flip_y(arrows.place), vectors=flip_y(arrows.vector))
     recording.send_columns(entity, [at], columns)

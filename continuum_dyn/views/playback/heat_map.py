@@ -6,42 +6,42 @@ import rerun as rr
 from continuum_dyn.views.playback.colors import BLACK, GREY, diverging
 from continuum_dyn.views.playback.drawing import Drawn, Lines, every_frame
 from continuum_dyn.views.playback.measures import Measures
-from continuum_dyn.views.playback.story import Story
+from continuum_dyn.views.playback.playback import Playback
 
 WIDTH, HEIGHT = 900, 300
-"""Of the picture, pixels."""
+"""Width and height of the picture, pixels."""
 BOTTOM, TOP = -float(HEIGHT), 0.0
 """Rerun's pictures hang down from the origin."""
 SHOWN = ((-110.0, WIDTH + 50.0), (BOTTOM - 60.0, TOP + 20.0))
-"""What the view shows: from left to right, from bottom to top."""
+"""Ranges of the view: from left to right, from bottom to top."""
 MOST_TICKS = 5
 
 
-def picture(story: Story, measures: Measures) -> np.ndarray:
+def picture(playback: Playback, measures: Measures) -> np.ndarray:
     """Red, green, blue of each pixel, shape (HEIGHT, WIDTH, 3): time to the right, segments upwards."""
-    segments = story.columns["curvature"].shape[1]
-    halfway = 0.5 * (story.times[1:] + story.times[:-1])
-    rows = np.searchsorted(halfway, _time_at(story, np.arange(WIDTH) + 0.5))
+    segments = playback.columns["curvature"].shape[1]
+    halfway = 0.5 * (playback.times[1:] + playback.times[:-1])
+    rows = np.searchsorted(halfway, _time_at(playback, np.arange(WIDTH) + 0.5))
     segment = (np.arange(HEIGHT)[::-1] * segments) // HEIGHT
-    return diverging(story.columns["curvature"][np.ix_(rows, segment)].swapaxes(0, 1), measures.curvature)
+    return diverging(playback.columns["curvature"][np.ix_(rows, segment)].swapaxes(0, 1), measures.curvature)
 
 
-def axes(story: Story) -> dict[str, Drawn]:
-    """Ticks with what they stand for."""
+def axes(playback: Playback) -> dict[str, Drawn]:
+    """Ticks and their labels."""
     frame = np.array([[[0.0, BOTTOM], [WIDTH, BOTTOM], [WIDTH, TOP], [0.0, TOP], [0.0, BOTTOM]]])
     return {
-        "time_axis": _time_axis(story),
-        "segment_axis": _segment_axis(story.columns["curvature"].shape[1]),
+        "time_axis": _time_axis(playback),
+        "segment_axis": _segment_axis(playback.columns["curvature"].shape[1]),
         "frame": Lines(frame, GREY, 1.0, 3.0),
     }
 
 
-def _time_axis(story: Story) -> Lines:
-    marks = story.times[0] + np.ptp(story.times) * np.linspace(0.0, 1.0, MOST_TICKS)
-    marks = marks if story.moves else np.unique(marks.round())
-    labels = [f"{mark:.4g} s" if story.moves else f"{mark:.0f}" for mark in marks]
-    labels[0] = ("time " if story.moves else "point ") + labels[0]
-    x = _place_of(story, marks)
+def _time_axis(playback: Playback) -> Lines:
+    marks = playback.times[0] + np.ptp(playback.times) * np.linspace(0.0, 1.0, MOST_TICKS)
+    marks = marks if playback.moves else np.unique(marks.round())
+    labels = [f"{mark:.4g} s" if playback.moves else f"{mark:.0f}" for mark in marks]
+    labels[0] = ("time " if playback.moves else "point ") + labels[0]
+    x = _place_of(playback, marks)
     strips = np.stack(
         [np.stack([x, x], axis=-1), np.tile([BOTTOM - 10.0, BOTTOM - 50.0], (len(x), 1))], axis=-1
     )
@@ -55,9 +55,9 @@ def _segment_axis(segments: int) -> Lines:
     return Lines(strips, BLACK, 0.0, 2.0, labels=[f"segment {number}" for number in numbers])
 
 
-def cursor(story: Story, rows: np.ndarray) -> Lines:
-    """The moment that is shown beside it."""
-    x = _place_of(story, story.times[rows])
+def cursor(playback: Playback, rows: np.ndarray) -> Lines:
+    """A line at the moment that the arm is shown at."""
+    x = _place_of(playback, playback.times[rows])
     strips = np.stack([np.stack([x, x], axis=-1), np.tile([BOTTOM, TOP], (len(x), 1))], axis=-1)
     return Lines(**every_frame(strips[:, None]), color=BLACK, width=1.5, order=5.0)
 
@@ -67,9 +67,9 @@ def send_picture(recording: rr.RecordingStream, entity: str, pixels: np.ndarray)
     recording.log(entity, rr.Image(pixels, draw_order=1.0), static=True)
 
 
-def _time_at(story: Story, x: np.ndarray) -> np.ndarray:
-    return story.times[0] + np.ptp(story.times) * x / WIDTH
+def _time_at(playback: Playback, x: np.ndarray) -> np.ndarray:
+    return playback.times[0] + np.ptp(playback.times) * x / WIDTH
 
 
-def _place_of(story: Story, times: np.ndarray) -> np.ndarray:
-    return WIDTH * (times - story.times[0]) / (np.ptp(story.times) or 1.0)
+def _place_of(playback: Playback, times: np.ndarray) -> np.ndarray:
+    return WIDTH * (times - playback.times[0]) / (np.ptp(playback.times) or 1.0)

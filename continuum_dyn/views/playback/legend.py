@@ -1,38 +1,38 @@
-"""What is drawn below the arm to read it by: a scale of lengths, one of curvature, and the runs' names."""
+"""The legend below the arm: a scale of lengths, one of curvature, and the runs' names."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from continuum_dyn.views.playback.arm import CORE_WIDTH, own_color
-from continuum_dyn.views.playback.colors import BLACK, diverging, packed
+from continuum_dyn.views.playback.colors import BLACK, diverging, pack
 from continuum_dyn.views.playback.drawing import Drawn, Lines, corners
 from continuum_dyn.views.playback.measures import Measures
-from continuum_dyn.views.playback.story import Story
+from continuum_dyn.views.playback.playback import Playback
 
 SHADES = 41
-"""Of the scale of curvature."""
+"""Number of colours in the scale of curvature."""
 
 
 def extent(drawn: Mapping[str, Drawn]) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of all that is ever drawn."""
+    """Lower left and upper right corner of all drawings over all times."""
     both = np.array([corners(each) for each in drawn.values()])
     return both[:, 0].min(axis=0), both[:, 1].max(axis=0)
 
 
-def legend(drawn: Mapping[str, Drawn], stories: Sequence[Story], measures: Measures) -> dict[str, Drawn]:
-    """Entities below what is drawn. The view has no axes: hence the scale of lengths."""
+def legend(drawn: Mapping[str, Drawn], playbacks: Sequence[Playback], measures: Measures) -> dict[str, Drawn]:
+    """Entities below the drawing. The view has no axes: hence the scale of lengths."""
     (left, bottom), (right, top) = extent(drawn)
     size = max(right - left, top - bottom)
     right = left + size
     y = bottom - 0.12 * size
     parts: dict[str, Drawn] = {"arm/scale": _length_scale(left, y, size)}
     parts |= _curvature_scale(right - 0.45 * size, right, y, measures.curvature)
-    for story in stories if len(stories) > 1 else ():
+    for playback in playbacks if len(playbacks) > 1 else ():
         y -= 0.09 * size
         strip = np.array([[[left, y], [left + 0.2 * size, y]]])
-        parts[story.at("arm", "line")] = Lines(strip, own_color(story, BLACK), 6.0, 5.0)
-        parts[story.at("arm", "name")] = Lines(strip, BLACK, 0.0, 4.0, labels=[story.name])
+        parts[playback.at("arm", "line")] = Lines(strip, own_color(playback, BLACK), 6.0, 5.0)
+        parts[playback.at("arm", "name")] = Lines(strip, BLACK, 0.0, 4.0, labels=[playback.name])
     return parts
 
 
@@ -45,10 +45,10 @@ def _length_scale(left: float, y: float, size: float) -> Lines:
 
 
 def _curvature_scale(left: float, right: float, y: float, most: float) -> dict[str, Drawn]:
-    """The colours from the largest curvature one way to that the other way; labels at its ends and middle."""
+    """The colours from the most negative to the most positive curvature; labels at ends and middle."""
     edges = np.linspace(left, right, SHADES + 1)
     strips = np.stack([np.stack([edges[:-1], edges[1:]], axis=-1), np.full((SHADES, 2), y)], axis=-1)
-    color = packed(diverging(np.linspace(-most, most, SHADES), most))
+    color = pack(diverging(np.linspace(-most, most, SHADES), most))
     tenth = 0.1 * (right - left)
     marks = np.array([left, 0.5 * (left + right), right])
     ticks = np.stack(

@@ -1,4 +1,4 @@
-"""A log shown while it is written, by a process of its own: it reads what is on disk, and never asks the run.
+"""Shows a log while it is written, in a separate process that reads the file and never the run.
 
 ``python -m continuum_dyn.views.playback.live LOG.h5 SINCE`` follows the log that is written since then (s, as
 of ``time.time``), in rerun's window, until it is complete or the process that started this one has ended.
@@ -20,22 +20,22 @@ from continuum_dyn.record.log_format import UNFINISHED
 from continuum_dyn.views.playback.blueprint import blueprint
 from continuum_dyn.views.playback.drawing import Drawn
 from continuum_dyn.views.playback.measures import measures_of
+from continuum_dyn.views.playback.playback import MOST_FRAMES, Playback, playback_of
 from continuum_dyn.views.playback.plots import plots_of
-from continuum_dyn.views.playback.recording import APPLICATION, send_beside, send_rows, send_story
-from continuum_dyn.views.playback.story import MOST_FRAMES, Story, story_of
+from continuum_dyn.views.playback.recording import APPLICATION, send_beside, send_playback, send_rows
 from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, free_ports
 from statics.errors import LogError
 
 INTERVAL = 0.5
-"""Shortest time between two looks at the log, s."""
+"""Shortest time between two readings of the log, s."""
 FLUSH_TIME = 20.0
-"""What is sent may take so long to arrive, s."""
+"""Longest time for sent data to arrive, s."""
 SHARE = 0.03
-"""Part of the time that reading and sending may take."""
+"""Largest part of the time for reading and sending."""
 
 
 class Follower:
-    """Sends to a recording what a log has more than the last time, and all of it anew once it is complete."""
+    """Sends a log's new rows to a recording, and all of them again once it is complete."""
 
     def __init__(self, recording: rr.RecordingStream) -> None:
         rr.set_strict_mode(True)
@@ -45,30 +45,30 @@ class Follower:
 
     def show(self, log: Log) -> None:
         """A complete log is the last one: colours and ranges are then those of the whole."""
-        story = story_of(log)
+        playback = playback_of(log)
         self.complete = log.complete
-        if story is not None and log.complete:
-            send_story(self.recording, story)
-        elif story is not None and len(story.times) > self.rows:
-            self._add(story)
+        if playback is not None and log.complete:
+            send_playback(self.recording, playback)
+        elif playback is not None and len(playback.times) > self.rows:
+            self._add(playback)
 
-    def _add(self, story: Story) -> None:
-        new = np.arange(self.rows, len(story.times))
-        measures = measures_of([story])
-        frames = new[new % _stride(story) == 0]
+    def _add(self, playback: Playback) -> None:
+        new = np.arange(self.rows, len(playback.times))
+        measures = measures_of([playback])
+        frames = new[new % _stride(playback) == 0]
         drawn: dict[str, Drawn] = {}
         if frames.size:
-            drawn = send_rows(self.recording, story, measures, frames, new)
-        drawn |= send_beside(self.recording, [story], measures, drawn)
+            drawn = send_rows(self.recording, playback, measures, frames, new)
+        drawn |= send_beside(self.recording, [playback], measures, drawn)
         if self.rows == 0:
-            plots = {name: [plot] for name, plot in plots_of(story).items()}
-            self.recording.send_blueprint(blueprint([story], drawn, plots, growing=True))
-        self.rows = len(story.times)
+            plots = {name: [plot] for name, plot in plots_of(playback).items()}
+            self.recording.send_blueprint(blueprint([playback], drawn, plots, growing=True))
+        self.rows = len(playback.times)
 
 
-def _stride(story: Story) -> int:
+def _stride(playback: Playback) -> int:
     """Samples from one frame to the next, so that the whole motion has no more frames than are played."""
-    samples = getattr(story.scenario.study, "samples", 1) if story.scenario is not None else 1
+    samples = getattr(playback.scenario.study, "samples", 1) if playback.scenario is not None else 1
     return -(-samples // MOST_FRAMES)
 
 
@@ -86,7 +86,7 @@ def follow(path: Path, since: float, follower: Follower, goes_on: Callable[[], b
 
 
 def _pause(seconds: float, may_last: Callable[[], bool]) -> None:
-    """Wait so long, but no longer than it may last."""
+    """Wait for that time (s), but no longer than ``may_last`` holds."""
     until = time.monotonic() + seconds
     time.sleep(INTERVAL)
     while time.monotonic() < until and may_last():
@@ -101,7 +101,7 @@ def _is_new(path: Path, since: float) -> bool:
 
 
 def _latest(path: Path, since: float) -> Log | None:
-    """The log that is written since then, finished or not; None if there is none that can be read yet."""
+    """The log written since then, finished or not; None if none can be read yet."""
     for candidate in (path, path.with_name(path.name + UNFINISHED)):
         with suppress(LogError):  # just being made or moved: the next look finds it
             if _is_new(candidate, since):

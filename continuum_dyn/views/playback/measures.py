@@ -1,4 +1,4 @@
-"""What sizes, widths and colours of a playback are measured by: the same for all runs shown together."""
+"""Largest values, which scale sizes, widths and colours alike for all runs shown together."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from continuum_dyn.views.playback.loads import acting_loads
-from continuum_dyn.views.playback.story import Story
+from continuum_dyn.views.playback.playback import Playback
 
 LEAST = 1e-300
-"""What is zero throughout is measured by this."""
+"""Smallest scale, for quantities that are zero throughout."""
 
 
 @dataclass(frozen=True)
@@ -23,15 +23,15 @@ class Measures:
     length: float
 
 
-def measures_of(stories: Sequence[Story]) -> Measures:
-    """The largest of each quantity in all of the stories."""
-    loads = [load for story in stories for load in acting_loads(story, story.samples)]
+def measures_of(playbacks: Sequence[Playback]) -> Measures:
+    """The largest of each quantity in all playbacks."""
+    loads = [load for playback in playbacks for load in acting_loads(playback, playback.samples)]
     return Measures(
-        curvature=_largest([story.columns["curvature"] for story in stories]),
-        tension=_largest([story.columns["tension"] for story in stories]),
+        curvature=_largest([playback.columns["curvature"] for playback in playbacks]),
+        tension=_largest([playback.columns["tension"] for playback in playbacks]),
         force=_largest([np.linalg.norm(load.force, axis=1) for load in loads]),
         moment=_largest([load.moment for load in loads]),
-        length=_largest([story.columns["length"][0].sum() for story in stories]),
+        length=_largest([playback.columns["length"][0].sum() for playback in playbacks]),
     )
 
 

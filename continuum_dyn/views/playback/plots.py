@@ -1,4 +1,4 @@
-"""What is plotted over time: series by name, with the unit that their axis has."""
+"""Plots over time: series by name, with the unit of their axis."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import rerun as rr
 
-from continuum_dyn.views.playback.colors import GREY, PALETTE, shades, told_apart
-from continuum_dyn.views.playback.drawing import when
-from continuum_dyn.views.playback.story import Story, spread
+from continuum_dyn.views.playback.colors import GREY, PALETTE, distinct_colors, shades
+from continuum_dyn.views.playback.drawing import time_column
+from continuum_dyn.views.playback.playback import Playback, spread
 from continuum_dyn.views.playback.targets import resting_rows
 from statics.quantities import QUANTITIES
 
@@ -21,7 +21,7 @@ LINE_WIDTH, THIN = 1.5, 0.8
 
 @dataclass(frozen=True)
 class Series:
-    """Values at the rows of a story, shape (rows,); one that is not a number leaves a gap.
+    """Values at the rows of a playback, shape (rows,); one that is not a number leaves a gap.
 
     ``is_bound`` is drawn thin and grey.
     """
@@ -39,16 +39,16 @@ class Plot:
     series: Sequence[Series]
 
 
-def plots_of(story: Story) -> dict[str, Plot]:
-    """What is plotted, by the last part of its entity; what the log does not know is left out."""
-    columns = story.columns
-    tension = [Series(*each) for each in zip(story.log.cables, columns["tension"].T, strict=True)]
+def plots_of(playback: Playback) -> dict[str, Plot]:
+    """Plots by the last part of their entity, without those that the log has no data for."""
+    columns = playback.columns
+    tension = [Series(*each) for each in zip(playback.log.cables, columns["tension"].T, strict=True)]
     plots = {
         "tension": Plot(QUANTITIES["tension"].label, tension),
         "load_factor": Plot(QUANTITIES["load_factor"].label, _load_factors(columns)),
-        "tip_x": Plot("tip x (m)", _tip(story, "disk_x")),
-        "tip_y": Plot("tip y (m)", _tip(story, "disk_y")),
-        "energy": Plot("energy since the start (J)", _since_start(story)),
+        "tip_x": Plot("tip x (m)", _tip(playback, "disk_x")),
+        "tip_y": Plot("tip y (m)", _tip(playback, "disk_y")),
+        "energy": Plot("energy since the start (J)", _since_start(playback)),
         "power": Plot(
             "power (W)", [Series(_words(name), columns[name]) for name in POWERS if name in columns]
         ),
@@ -72,14 +72,14 @@ def _curvature(columns: Mapping[str, np.ndarray]) -> list[Series]:
     return [Series(f"segment {n + 1}", curvature[n]) for n in spread(len(curvature), MOST_SERIES)]
 
 
-def _since_start(story: Story) -> list[Series]:
+def _since_start(playback: Playback) -> list[Series]:
     """Changes, so that the ledger can be read: input work is what is stored and dissipated.
 
     Beside other runs, what is stored is shown as a whole.
     """
-    columns = {name: story.columns[name] for name in (*STORED, *LEDGER) if name in story.columns}
+    columns = {name: playback.columns[name] for name in (*STORED, *LEDGER) if name in playback.columns}
     stored = [columns[name] for name in STORED if name in columns]
-    if story.name and stored:
+    if playback.name and stored:
         ledger = {name: columns[name] for name in LEDGER if name in columns}
         columns = {"stored_energy": np.sum(stored, axis=0), **ledger}
     return [Series(_words(name), values - values[0]) for name, values in columns.items()]
@@ -92,16 +92,16 @@ def _steps(columns: Mapping[str, np.ndarray]) -> list[Series]:
     return [Series("step", np.log10(taken))]
 
 
-def _tip(story: Story, name: str) -> list[Series]:
-    """The tip, where it would rest under the moment's inputs and, of a run alone, the settled's band."""
-    series = [Series("tip", story.columns[name][:, -1])]
-    resting = resting_rows(story.log) if story.moves else np.array([-1])
+def _tip(playback: Playback, name: str) -> list[Series]:
+    """The tip, its equilibrium under the moment's inputs and, for a single run, the band of settling."""
+    series = [Series("tip", playback.columns[name][:, -1])]
+    resting = resting_rows(playback.log) if playback.moves else np.array([-1])
     if not (resting >= 0).any():
         return series
-    target = np.where(resting >= 0, story.log.equilibria[name][resting, -1], np.nan)
+    target = np.where(resting >= 0, playback.log.equilibria[name][resting, -1], np.nan)
     series.append(Series("static target", target))
-    if not story.name and story.scenario is not None and story.scenario.study.settles:
-        within = story.scenario.settled_within
+    if not playback.name and playback.scenario is not None and playback.scenario.study.settles:
+        within = playback.scenario.settled_within
         series += [Series("settled band", target + way, is_bound=True) for way in (-within, within)]
     return series
 
@@ -114,12 +114,12 @@ def value_range(plots: Sequence[Plot]) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def send_style(recording: rr.RecordingStream, entity: str, story: Story, plot: Plot) -> None:
+def send_style(recording: rr.RecordingStream, entity: str, playback: Playback, plot: Plot) -> None:
     """Names, colours and widths of the series."""
     count = len(plot.series)
     bounds = np.array([series.is_bound for series in plot.series])
-    colors = shades(int(PALETTE[story.rank]), count) if story.name else told_apart(count)
-    prefix = f"{story.name}: " if story.name else ""
+    colors = shades(int(PALETTE[playback.rank]), count) if playback.name else distinct_colors(count)
+    prefix = f"{playback.name}: " if playback.name else ""
     style = {
         "names": [prefix + series.name for series in plot.series],
         "colors": np.where(bounds, np.uint32(GREY), colors),
@@ -130,14 +130,14 @@ def send_style(recording: rr.RecordingStream, entity: str, story: Story, plot: P
         aggregation_policy="MinMax",  # the mean of fast oscillations would look like rest
     )
     recording.log(entity, lines, static=True)
-    if not story.moves:
+    if not playback.moves:
         recording.log(entity, rr.SeriesPoints(**style, marker_sizes=[3.0] * count), static=True)
 
 
 def send_values(
-    recording: rr.RecordingStream, entity: str, story: Story, plot: Plot, rows: np.ndarray
+    recording: rr.RecordingStream, entity: str, playback: Playback, plot: Plot, rows: np.ndarray
 ) -> None:
     """The series at those rows."""
     values = np.column_stack([series.values[rows] for series in plot.series])
     columns = rr.Scalars.columns(scalars=values.ravel()).partition(np.full(len(rows), len(plot.series)))
-    recording.send_columns(entity, [when(story, rows)], columns)
+    recording.send_columns(entity, [time_column(playback, rows)], columns)

@@ -22,7 +22,7 @@ VIEWER = (
 """The viewer of this Python environment, for this computer only. ``-m rerun_cli`` loses its exit status."""
 
 START_TIME = 20.0
-"""A server that does not answer within this time (s) is given up."""
+"""Longest time for a server to answer, s."""
 
 
 def show(logs: Sequence[Log]) -> None:
@@ -30,9 +30,9 @@ def show(logs: Sequence[Log]) -> None:
 
     Raises ``LogError`` if the viewer cannot run here.
     """
-    with _saved(logs) as path:
+    with _save_temporarily(logs) as path:
         # On the default port, a viewer that already runs would take the file over.
-        with _started(["--port", "auto", str(path)]) as viewer:
+        with _start(["--port", "auto", str(path)]) as viewer:
             _, words = viewer.communicate()
         if viewer.returncode:
             raise LogError(f"the rerun viewer cannot run here: {_last_line(words, viewer.returncode)}")
@@ -44,9 +44,9 @@ def serve(logs: Sequence[Log], tell: Callable[[str], None]) -> None:
     Raises ``LogError`` if the server cannot run here.
     """
     data, page = free_ports(2)
-    with _saved(logs) as path:
+    with _save_temporarily(logs) as path:
         ports = ["--port", str(data), "--web-viewer-port", str(page)]
-        with _started(["--serve-web", *ports, str(path)]) as server:
+        with _start(["--serve-web", *ports, str(path)]) as server:
             _wait_for(page, server)
             tell(address(data, page))
             try:
@@ -58,13 +58,13 @@ def serve(logs: Sequence[Log], tell: Callable[[str], None]) -> None:
 
 
 def address(data: int, page: int) -> str:
-    """Where a browser finds the viewer on port ``page`` with the recording served on port ``data``."""
+    """The address of the viewer on port ``page`` with the recording served on port ``data``."""
     source = quote(f"rerun+http://{LOOPBACK}:{data}/proxy", safe="")
     return f"http://{LOOPBACK}:{page}/?url={source}&theme=light"
 
 
 def free_ports(count: int) -> list[int]:
-    """So many ports that nothing listens on."""
+    """``count`` ports that nothing listens on."""
     sockets = [socket.create_server((LOOPBACK, 0)) for _ in range(count)]
     ports = [each.getsockname()[1] for each in sockets]
     for each in sockets:
@@ -73,8 +73,8 @@ def free_ports(count: int) -> list[int]:
 
 
 @contextmanager
-def _saved(logs: Sequence[Log]) -> Iterator[Path]:
-    """A recording of the logs for as long as it is looked at."""
+def _save_temporarily(logs: Sequence[Log]) -> Iterator[Path]:
+    """Save a recording of the logs while it is shown."""
     with TemporaryDirectory(prefix="continuum-dyn-", ignore_cleanup_errors=True) as folder:
         path = Path(folder) / f"{logs[0].path.stem}.rrd"
         save(logs, path)
@@ -82,8 +82,8 @@ def _saved(logs: Sequence[Log]) -> Iterator[Path]:
 
 
 @contextmanager
-def _started(arguments: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
-    """The viewer's process, which ends with the block at the latest, and what it started with it."""
+def _start(arguments: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+    """Start the viewer; it and its own processes end with the block at the latest."""
     import psutil
 
     try:
@@ -101,7 +101,7 @@ def _started(arguments: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
 
 
 def _wait_for(port: int, server: subprocess.Popen[str]) -> None:
-    """Until something answers there. Raises ``LogError`` where nothing does."""
+    """Wait until a server answers on the port. Raises ``LogError`` if none does."""
     until = monotonic() + START_TIME
     while server.poll() is None and monotonic() < until:
         with suppress(OSError), socket.create_connection((LOOPBACK, port), timeout=1.0):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from continuum_dyn.commands.terminal.assertions import judged, parsed
+from continuum_dyn.commands.terminal.assertions import judge, parse
 from statics import InputError
 
 FIGURES = {"settling_time_2": 0.3, "static_gap": 1e-8, "frequency": None}
@@ -21,7 +21,7 @@ FIGURES = {"settling_time_2": 0.3, "static_gap": 1e-8, "frequency": None}
     ],
 )
 def test_assertion_compares_a_figure_with_a_number(text: str, holds: bool) -> None:
-    (verdict,) = judged(parsed([text], list(FIGURES)), FIGURES)
+    (verdict,) = judge(parse([text], list(FIGURES)), FIGURES)
     assert verdict.holds is holds
 
 
@@ -36,16 +36,16 @@ def test_assertion_compares_a_figure_with_a_number(text: str, holds: bool) -> No
 )
 def test_nothing_but_name_comparison_and_number_is_taken(text: str) -> None:
     with pytest.raises(InputError, match=r"takes NAME < NUMBER"):
-        parsed([text], list(FIGURES))
+        parse([text], list(FIGURES))
 
 
 def test_unknown_name_is_refused_with_the_nearest() -> None:
     with pytest.raises(InputError, match=r"Did you mean 'settling_time_2'\?"):
-        parsed(["setling_time_2 < 1"], list(FIGURES))
+        parse(["setling_time_2 < 1"], list(FIGURES))
 
 
 @pytest.mark.parametrize("text", ["frequency < 1e9", "frequency >= 0"])
 def test_figure_that_was_not_found_holds_nothing(text: str) -> None:
-    (verdict,) = judged(parsed([text], list(FIGURES)), FIGURES)
+    (verdict,) = judge(parse([text], list(FIGURES)), FIGURES)
     assert not verdict.holds
     assert verdict.record == {"assert": str(verdict.assertion), "value": None, "holds": False}

@@ -11,7 +11,7 @@ from conftest import SCENARIOS
 from typer.testing import CliRunner
 
 from continuum_dyn.cli import app
-from continuum_dyn.commands.terminal.show import wrapped
+from continuum_dyn.commands.terminal.show import wrap
 from continuum_dyn.experiments import cost
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
@@ -154,10 +154,10 @@ def test_explain_writes_latex() -> None:
 
 def test_messages_are_broken_at_words_on_a_terminal_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     message = "error: a/long/path/to/a/scenario.toml: " + "no such word. " * 9 + "\nand another --set"
-    assert wrapped(message) == message
+    assert wrap(message) == message
     monkeypatch.setenv("COLUMNS", "30")
     monkeypatch.setattr(sys, "stderr", SimpleNamespace(isatty=lambda: True))
-    lines = wrapped(message).splitlines()
+    lines = wrap(message).splitlines()
     assert "  a/long/path/to/a/scenario.toml:" in lines
     assert lines[-1] == "and another --set"
     assert all(len(line) <= 30 for line in lines if "/" not in line)

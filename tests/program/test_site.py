@@ -14,7 +14,7 @@ from continuum_dyn.scenario.schema import json_schema
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.fixture(scope="module")

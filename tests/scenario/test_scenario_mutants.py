@@ -17,7 +17,8 @@ TEXTS = [path.read_text() for path in sorted(SCENARIOS.glob("*.toml"))]
 
 def fuzz(count: int) -> subprocess.CompletedProcess[str]:
     """In a process of its own, whose memory is bounded."""
-    command = [sys.executable, Path(__file__).with_name("fuzz.py"), "--count", str(count), "--seed", "7"]
+    script = Path(__file__).parents[1] / "tools" / "fuzz.py"
+    command = [sys.executable, script, "--count", str(count), "--seed", "7"]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 

@@ -1,8 +1,8 @@
 """Logs spoiled at random: in their bytes, or in what they hold, by way of HDF5 itself.
 
-``python tests/log_mutants.py --count 10000 --seed 0`` reads so many, each in a process of its own. Whatever
-ends other than in a log or in a ``LogError``, takes longer than ``SECONDS`` or more than ``MEMORY`` is
-printed, and the exit status is 1.
+``python tests/tools/log_mutants.py --count 10000 --seed 0`` reads so many, each in a process of its own.
+Whatever ends other than in a log or in a ``LogError``, takes longer than ``SECONDS`` or more than ``MEMORY``
+is printed, and the exit status is 1.
 """
 
 import argparse
@@ -26,11 +26,11 @@ from continuum_dyn.integrators import Budget
 from continuum_dyn.record import read_log, write_log
 from continuum_dyn.record.comparison import compare
 from continuum_dyn.record.logged_scenario import logged_scenario
-from continuum_dyn.record.reading import departures_of
-from continuum_dyn.record.resuming import logged_motion
+from continuum_dyn.record.reading import list_departures
+from continuum_dyn.record.resuming import resumption_of
 from statics.errors import LogError
 
-SCENARIOS = Path(__file__).parents[1] / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SECONDS = 20
 """Longest time of the processor that one mutant may take."""
 MEMORY = 500_000_000
@@ -162,7 +162,7 @@ def mutant(original: bytes, path: Path, rng: Random) -> None:
 def outcome_of(path: Path) -> str:
     """How reading ends: "refused" or "read". Raises what it should not."""
     try:
-        departures_of(path)
+        list_departures(path)
     except LogError as error:
         _check(str(error))
     try:
@@ -172,7 +172,7 @@ def outcome_of(path: Path) -> str:
         return "refused"
     compare(log, log)
     try:
-        logged_motion(log, logged_scenario(log))
+        resumption_of(log, logged_scenario(log))
     except LogError as error:
         _check(str(error))
     return "read"

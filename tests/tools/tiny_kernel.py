@@ -1,7 +1,7 @@
 """The smallest kernel, made and kept as every other, and what calls it; for tests of how code is kept.
 
-It is compiled in a tenth of a second. ``python tests/tiny_kernel.py 3 5`` says that it is ready, waits for a
-line, and prints the answers of two of them.
+It is compiled in a tenth of a second. ``python tests/tools/tiny_kernel.py 3 5`` says that it is ready, waits
+for a line, and prints the answers of two of them.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""What a playback tells: the columns of a log along a time line, and which rows of them are shown."""
+"""A log's columns along a time line, and the rows of them that are shown."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,22 +12,22 @@ from statics.errors import LogError
 
 FRAMES_PER_SECOND = 60
 SHORTEST_PLAYBACK = 10.0
-"""Shorter motions play in slow motion, to take this long (s)."""
+"""Shortest time that a playback takes, s; shorter motions play in slow motion."""
 
 MOST_FRAMES = 2000
 MOST_POSES = 500_000
-"""Most frames times segments; arms of many segments are drawn in fewer frames."""
+"""Largest number of frames times segments; arms of many segments are drawn in fewer frames."""
 
 MOST_SAMPLES = 20_000
 
 
 @dataclass(frozen=True)
-class Story:
-    """A log as it is told: ``columns`` by glossary name, one row for each of ``times`` on the time line.
+class Playback:
+    """A log as it is played: ``columns`` by glossary name, one row for each of ``times`` on the time line.
 
     A motion runs along ``sim_time``, times in s; equilibria along ``point``, times their numbers.
-    ``scenario`` is None where the log carries none. ``name`` tells runs apart that are shown together, and is
-    empty for one alone; ``rank`` counts them from 0.
+    ``scenario`` is None if the log holds none. ``name`` distinguishes runs that are shown together, and is
+    empty for a single run; ``rank`` counts them from 0.
     """
 
     log: Log
@@ -40,7 +40,7 @@ class Story:
 
     @property
     def moves(self) -> bool:
-        """Whether it is a motion."""
+        """Whether the log is of a motion."""
         return self.timeline == "sim_time"
 
     @property
@@ -61,30 +61,30 @@ class Story:
         return spread(len(self.times), MOST_SAMPLES)
 
     def at(self, *path: str) -> str:
-        """The entity of that path; where runs are shown together, with the run's name after its root."""
+        """The entity of that path, with the run's name after its root if several runs are shown."""
         return "/".join(part for part in (path[0], self.name, *path[1:]) if part)
 
 
 def spread(count: int, most: int) -> np.ndarray:
-    """At most ``most`` of the numbers below ``count``, spread evenly, both ends among them."""
+    """At most ``most`` of the numbers below ``count``, spaced evenly, both ends included."""
     return np.linspace(0, count - 1, min(count, most)).round().astype(int)
 
 
-def story_of(log: Log, name: str = "", rank: int = 0) -> Story | None:
-    """The motion, or else the equilibria; None if the run ended before its first pose."""
+def playback_of(log: Log, name: str = "", rank: int = 0) -> Playback | None:
+    """The playback of a motion, or else of equilibria; None if the run ended before its first pose."""
     try:
         scenario = logged_scenario(log)
     except LogError:
         scenario = None
     if log.trajectory and log.trajectory["time"].size:
-        return Story(log, "sim_time", log.trajectory["time"], log.trajectory, scenario, name, rank)
+        return Playback(log, "sim_time", log.trajectory["time"], log.trajectory, scenario, name, rank)
     if log.equilibria:
-        return Story(log, "point", log.equilibria["point"], log.equilibria, scenario, name, rank)
+        return Playback(log, "point", log.equilibria["point"], log.equilibria, scenario, name, rank)
     return None
 
 
 def names_of(logs: Sequence[Log]) -> list[str]:
-    """A name for each log that is shown with others: its file's, with as much of its path as it takes."""
+    """A distinct name for each log shown with others: its file's, with as much of its path as needed."""
     if len(logs) == 1:
         return [""]
     paths = [log.path.resolve().with_suffix("").parts for log in logs]

@@ -23,7 +23,7 @@ from continuum_dyn.effects import (
     RotaryInertia,
 )
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Span
+from continuum_dyn.scenario.intervals import Interval
 from statics import (
     Arm,
     Base,
@@ -236,12 +236,12 @@ def let_out(case: Case) -> Equilibrium:
     return ramp(solver, [np.array(more) * case.drives, case.drives])[-1]
 
 
-def dynamics_of(case: Case) -> tuple[Dynamics, np.ndarray, Span]:
+def dynamics_of(case: Case) -> tuple[Dynamics, np.ndarray, Interval]:
     """The equations of motion, the state and inputs that stay as they are."""
     dynamics = Dynamics(case.scene)
     pieces = np.zeros((len(case.scene.inputs), 6))
     pieces[:, 1] = case.drives
-    return dynamics, dynamics.state(case.q, case.u), Span(0.0, 1.0, pieces)
+    return dynamics, dynamics.state(case.q, case.u), Interval(0.0, 1.0, pieces)
 
 
 def accelerations(case: Case) -> np.ndarray:

@@ -21,7 +21,7 @@ from statics.quantities import QUANTITIES
 
 runner = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"})
 STEP = SCENARIOS / "step_response.toml"
-FORMAT = Path(__file__).parents[1] / "docs" / "reference" / "log_format.md"
+FORMAT = Path(__file__).parents[2] / "docs" / "reference" / "log_format.md"
 
 
 @pytest.fixture(scope="module")

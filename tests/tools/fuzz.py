@@ -1,4 +1,4 @@
-"""Mutants of the scenarios, loaded and run: ``python tests/fuzz.py --count 1000000 --seed 0``.
+"""Mutants of the scenarios, loaded and run: ``python tests/tools/fuzz.py --count 1000000 --seed 0``.
 
 Every mutant must load or be refused with an ``InputError``. Those that load, and whose kernels are those of
 the scenarios named in ``WARM``, are run with a small budget, and the log of one in ``LOGGED`` is written and
@@ -28,7 +28,7 @@ from continuum_dyn.record import read_log, write_log
 from statics import InputError
 from statics.kernels import loading
 
-SCENARIOS = Path(__file__).parents[1] / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TABLE = SCENARIOS / "slow_ramp.csv"
 WARM = ("step_response", "tension_ramp", "unactuated", "step_response_payload")
 BUDGET = Budget(steps=100, seconds=1.0)

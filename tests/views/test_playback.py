@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from continuum_dyn.cli import app
 from continuum_dyn.record import Log
-from continuum_dyn.views.playback import story as playback_story
+from continuum_dyn.views.playback import playback
 from continuum_dyn.views.playback.arm import POINTS_PER_SEGMENT
 from continuum_dyn.views.playback.recording import save
 from statics import Outcome
@@ -150,7 +150,7 @@ def test_a_straight_arm_is_drawn_straight(ramp: Log, tmp_path: Path) -> None:
 def test_long_arms_and_long_motions_are_thinned_out(
     motion: Log, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(playback_story, "MOST_POSES", 20_000)
+    monkeypatch.setattr(playback, "MOST_POSES", 20_000)
     samples, disks = 500, 200
     many = {name: np.zeros((samples, disks)) for name in ("disk_x", "disk_y", "disk_theta", "curvature")}
     many |= {"length": np.full((samples, disks), 4e-4), "tension": np.zeros((samples, 1))}

@@ -12,7 +12,7 @@ from continuum_dyn import simulate
 from continuum_dyn.answers.lag import delay, gap, rate_within
 from continuum_dyn.answers.pace import at_pace
 from continuum_dyn.answers.ramp import FIGURES, RampAnswers, ramp_answers
-from continuum_dyn.answers.ramp_rates import measured
+from continuum_dyn.answers.ramp_rates import measure_at_other_rates
 from continuum_dyn.cli import app
 from continuum_dyn.record import Log, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
@@ -107,7 +107,7 @@ def test_lag_comes_to_the_error_at_the_rate_that_was_found_by_running(
     slow: RampAnswers, slow_log: Path
 ) -> None:
     scenario, error = logged_scenario(read_log(slow_log)), 3e-5
-    found = measured(ramp_answers(read_log(slow_log), error), scenario)
+    found = measure_at_other_rates(ramp_answers(read_log(slow_log), error), scenario)
     rate = found.figures["measured_quasistatic_rate"]
     assert rate is not None
     rates, lags = np.array(found.measured).T

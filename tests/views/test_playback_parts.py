@@ -15,22 +15,22 @@ from continuum_dyn.views.playback.arm import TAUT_WIDTH, moving_parts
 from continuum_dyn.views.playback.colors import diverging
 from continuum_dyn.views.playback.drawing import Arrows, Drawn, Lines
 from continuum_dyn.views.playback.measures import measures_of
+from continuum_dyn.views.playback.playback import Playback, names_of, playback_of
 from continuum_dyn.views.playback.plots import plots_of
-from continuum_dyn.views.playback.recording import recorded
-from continuum_dyn.views.playback.story import Story, names_of, story_of
+from continuum_dyn.views.playback.recording import record_logs
 from continuum_dyn.views.playback.targets import resting_rows
 from statics.errors import InputError
 
 
-def told(log: Log) -> Story:
-    story = story_of(log)
-    assert story is not None
-    return story
+def playback_from(log: Log) -> Playback:
+    playback = playback_of(log)
+    assert playback is not None
+    return playback
 
 
 def drawn(log: Log) -> dict[str, Drawn]:
-    story = told(log)
-    return moving_parts(story, np.arange(len(story.times)), measures_of([story]))
+    playback = playback_from(log)
+    return moving_parts(playback, np.arange(len(playback.times)), measures_of([playback]))
 
 
 def lines(log: Log, entity: str) -> Lines:
@@ -59,8 +59,8 @@ def test_each_segment_has_the_colour_of_its_curvature() -> None:
 
 
 def test_picture_has_time_to_the_right_and_segments_upwards() -> None:
-    story = told(motion_log(2, curvature=np.array([[1.0, 0.0], [0.0, -1.0]])))
-    picture = heat_map.picture(story, measures_of([story]))
+    playback = playback_from(motion_log(2, curvature=np.array([[1.0, 0.0], [0.0, -1.0]])))
+    picture = heat_map.picture(playback, measures_of([playback]))
     first, last = diverging(np.array([1.0, 0.0]), 1.0), diverging(np.array([0.0, -1.0]), 1.0)
     assert picture.shape == (heat_map.HEIGHT, heat_map.WIDTH, 3)
     np.testing.assert_array_equal(picture[[-1, 0], 0], first[[0, 1]])
@@ -127,7 +127,7 @@ def test_round_arrow_turns_the_way_of_its_moment() -> None:
 def test_log_without_a_scenario_says_that_loads_are_not_drawn() -> None:
     log = replace(motion_log(loads=FORCE), scenario="")
     assert not any("loads" in entity for entity in drawn(log))
-    assert "loads are not drawn" in about(told(log))
+    assert "loads are not drawn" in about(playback_from(log))
 
 
 # ---- equilibria of the moment ----
@@ -166,7 +166,7 @@ def test_ghost_is_where_the_equilibrium_of_the_moment_is() -> None:
 def test_tip_is_plotted_with_its_target_and_the_band_that_counts_as_settled() -> None:
     log = motion_log(4, tension=np.array([[0.0], [0.5], [1.0], [1.0]]))
     log = replace(log, equilibria=equilibria(np.array([1, 2]), np.array([0.0, 1.0]), np.array([0.0, 1.0])))
-    tip, target, low, high = plots_of(told(log))["tip_x"].series
+    tip, target, low, high = plots_of(playback_from(log))["tip_x"].series
     np.testing.assert_array_equal(tip.values, LENGTH)
     np.testing.assert_allclose(target.values, [np.nan, np.nan, LENGTH + 1e-3, LENGTH + 1e-3])
     np.testing.assert_allclose(high.values - low.values, [np.nan, np.nan, 2e-3 * LENGTH, 2e-3 * LENGTH])
@@ -185,7 +185,7 @@ def test_runs_are_named_by_as_much_of_their_path_as_it_takes() -> None:
 
 def test_runs_share_a_view_and_a_time_in_colours_and_names_of_their_own(tmp_path: Path) -> None:
     short, long = motion_log(5, path="short.h5"), motion_log(9, path="long.h5", duration=2.0)
-    (tmp_path / "both.rrd").write_bytes(recorded([short, long]))
+    (tmp_path / "both.rrd").write_bytes(record_logs([short, long]))
     entities = entities_of(tmp_path / "both.rrd")
     for log, name in ((short, "short"), (long, "long")):
         plot = entities[f"/series/tension/{name}"]
@@ -202,7 +202,7 @@ def test_runs_share_a_view_and_a_time_in_colours_and_names_of_their_own(tmp_path
 
 def test_results_and_scenario_are_told_in_words() -> None:
     log = replace(motion_log(), attributes={"static_gap": 2e-8, "solve_time": 0.003})
-    words = about(told(log))
+    words = about(playback_from(log))
     assert "| tip at the end | x 40.0000 mm, y 0.0000 mm, theta 0.00000 rad |" in words
     assert "| gap to the static equilibrium | 2e-08 m |" in words
     assert log.scenario.strip() in words
@@ -213,4 +213,4 @@ def test_motion_and_equilibria_have_no_time_in_common() -> None:
     resting = equilibria(np.array([1, 2]), np.zeros(2), np.ones(2)) | {"disk_theta": np.zeros((2, 2))}
     still = replace(log, path=Path("ramp.h5"), trajectory={}, equilibria=resting)
     with pytest.raises(InputError, match=r"run\.h5 is a motion and ramp\.h5 a sequence of equilibria"):
-        recorded([log, still])
+        record_logs([log, still])

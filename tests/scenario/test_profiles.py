@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.integrators import METHODS, ChainSolver
-from continuum_dyn.scenario.intervals import joined_spans, spans
+from continuum_dyn.scenario.intervals import cut_into_intervals, join_intervals
 from continuum_dyn.scenario.profiles import (
     TIME_RESOLUTION,
     Constant,
@@ -22,7 +22,7 @@ from continuum_dyn.scenario.profiles import (
     SmoothRamp,
     Step,
     Table,
-    lowest,
+    lower_bound,
 )
 from continuum_dyn.scenario.rates import Rate
 from continuum_dyn.scenario.solver import Method, Solver
@@ -31,7 +31,7 @@ from statics import InputError
 
 
 def sampled(profile: Profile | Rate, times: np.ndarray, duration: float) -> np.ndarray:
-    stretches = spans((profile,), duration)
+    stretches = cut_into_intervals((profile,), duration)
     values = np.empty(times.size)
     for span in stretches:
         inside = (times >= span.start) & (times <= span.end)
@@ -88,7 +88,7 @@ def test_table_is_linear_between_its_rows(rows: dict[float, float]) -> None:
 
 def test_every_corner_of_every_profile_ends_a_span() -> None:
     profiles = (Step(0.0, 1.0, at=0.3), Ramp(0.0, 1.0, 0.3, 0.8), Table((0.5, 0.6), (0.0, 1.0)))
-    stretches = spans(profiles, 1.0)
+    stretches = cut_into_intervals(profiles, 1.0)
     assert [span.start for span in stretches] == [0.0, 0.3, 0.5, 0.6, 0.8]
     assert all(earlier.end == later.start for earlier, later in pairwise(stretches))
 
@@ -135,7 +135,7 @@ def test_a_step_keeps_its_size_across_corners_where_nothing_jumps(method: Method
 def test_a_jump_and_a_wave_start_the_steps_anew() -> None:
     profile = Table((0.0, 0.1, 0.2), (0.0, 1.0, 0.5))
     step, wave = Step(0.0, 1.0, at=0.15), SmoothRamp(0.0, 1.0, start=0.17, end=0.3)
-    joined = joined_spans(spans((profile, step, wave), 0.4))
+    joined = join_intervals(cut_into_intervals((profile, step, wave), 0.4))
     assert [[span.start for span in group] for group in joined] == [[0.0, 0.1], [0.15], [0.17, 0.2, 0.3]]
 
 
@@ -175,9 +175,9 @@ def test_profiles_that_cannot_be_are_refused(wrong: Callable[[], Profile]) -> No
     ],
 )
 def test_lowest_value_of_a_profile(profile: Profile, least: float) -> None:
-    assert lowest(profile) == least
+    assert lower_bound(profile) == least
     values = np.concatenate(
-        [span.inputs(np.linspace(span.start, span.end, 999)) for span in spans((profile,), 2.0)]
+        [span.inputs(np.linspace(span.start, span.end, 999)) for span in cut_into_intervals((profile,), 2.0)]
     )
     assert values.min() == pytest.approx(least, abs=1e-4)
 

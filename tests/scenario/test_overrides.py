@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from continuum_dyn import load_scenario
 from continuum_dyn.cli import app
 from continuum_dyn.record import read_log
-from continuum_dyn.scenario.overrides import overridden
+from continuum_dyn.scenario.overrides import apply_overrides
 from continuum_dyn.scenario.profiles import Constant, Sine, Step
 from continuum_dyn.scenario.toml_text import toml_text
 from statics import DiskLoads, InputError
@@ -41,7 +41,7 @@ def test_toml_that_is_written_reads_back_as_it_was(content: dict[str, object]) -
 @pytest.mark.parametrize("path", EVERY, ids=lambda path: path.stem)
 def test_every_scenario_written_anew_says_the_same(path: Path) -> None:
     content = tomllib.loads(path.read_text())
-    assert tomllib.loads(overridden(path.read_text(), path.name, ["study.kind=motion"])) == content | {
+    assert tomllib.loads(apply_overrides(path.read_text(), path.name, ["study.kind=motion"])) == content | {
         "title": f"{content['title']}, study.kind=motion",
         "study": content["study"] | {"kind": "motion"},
     }

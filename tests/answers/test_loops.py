@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from continuum_dyn.answers.loops import Loop, on_both_ways, widest_gap, widest_loop, work_around
-from continuum_dyn.answers.turnings import monotonic_ways
+from continuum_dyn.answers.loops import Loop, on_both_branches, widest_gap, widest_loop, work_around
+from continuum_dyn.answers.turnings import monotonic_branches
 
 TURN = np.linspace(0.0, 4.0 * np.pi, 4001)
 PULL, DRAW, LATE = 0.8, 3e-3, 0.3
@@ -12,7 +12,7 @@ PULL, DRAW, LATE = 0.8, 3e-3, 0.3
 
 
 def loop_of(drive: np.ndarray) -> tuple[Loop, np.ndarray]:
-    loop = widest_loop(drive, monotonic_ways(drive, 0.01 * float(np.ptp(drive))))
+    loop = widest_loop(drive, monotonic_branches(drive, 0.01 * float(np.ptp(drive))))
     assert loop is not None
     return loop, drive
 
@@ -41,14 +41,14 @@ def test_part_of_a_way_back_is_closed_at_its_end() -> None:
     draw = np.array([0.0, 2e-3, 1.5e-3])
     loop, drive = loop_of(tension)
     assert work_around(loop, drive, tension, draw) == pytest.approx(0.5 * 1.0 * 0.5e-3, rel=1e-12)
-    there, back = on_both_ways(loop, drive, draw)
+    there, back = on_both_branches(loop, drive, draw)
     np.testing.assert_allclose([there[0], back[0]], [1e-3, 1.5e-3])
     assert widest_gap(loop, drive, np.column_stack([draw, 0.0 * draw])) == pytest.approx(0.5e-3)
 
 
 def test_widest_of_several_loops_is_taken_and_the_later_of_equals() -> None:
     drive = np.array([0.0, 1.0, 0.5, 3.0, 0.5, 3.0])
-    loop = widest_loop(drive, monotonic_ways(drive, 0.1))
+    loop = widest_loop(drive, monotonic_branches(drive, 0.1))
     assert loop is not None
     assert (loop.there, loop.back, loop.rises) == (slice(3, 5), slice(4, 6), False)
-    assert widest_loop(np.arange(4.0), monotonic_ways(np.arange(4.0), 0.1)) is None
+    assert widest_loop(np.arange(4.0), monotonic_branches(np.arange(4.0), 0.1)) is None

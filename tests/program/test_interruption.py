@@ -82,7 +82,7 @@ def check(found: Interrupted, finished: tuple[Outcome, ...] = ()) -> None:
             "after the motion, 0 points",
         ),
         ("step_response", "continuum_dyn.record.streaming:StreamedLog.finish", 1, "settled", ""),
-        ("step_response", "continuum_dyn.views.playback.recording:recorded", 1, "settled", ""),
+        ("step_response", "continuum_dyn.views.playback.recording:record_logs", 1, "settled", ""),
         ("step_response", "continuum_dyn.commands.run:_show", 1, "settled", ""),
     ],
 )

@@ -26,11 +26,11 @@ from typer.testing import CliRunner
 
 from continuum_dyn.cli import app
 
-REPOSITORY = Path(__file__).parents[1]
+REPOSITORY = Path(__file__).parents[2]
 DOCS = REPOSITORY / "docs"
 PAGES = [REPOSITORY / "README.md", *sorted(DOCS.rglob("*.md"))]
 PERFORMED_ELSEWHERE = {"docs/how_to/own_effect.md"}
-"""Pages with a test of their own: tests/test_own_effect_page.py."""
+"""Pages with a test of their own: tests/program/test_own_effect_page.py."""
 SLOW = {
     "README.md",
     "docs/how_to/accuracy.md",

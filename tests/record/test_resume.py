@@ -14,9 +14,9 @@ from continuum_dyn.integrators import Budget
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
-from continuum_dyn.record.resuming import logged_motion
+from continuum_dyn.record.resuming import resumption_of
 from continuum_dyn.record.writing import columns_of
-from continuum_dyn.scenario.intervals import inputs_of, spans
+from continuum_dyn.scenario.intervals import cut_into_intervals, inputs_at
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
@@ -87,7 +87,7 @@ def test_it_may_be_broken_off_any_number_of_times(tmp_path: Path) -> None:
     unbroken, log = simulate(scenario), broken_off(scenario, tmp_path / "log.h5", 50)
     assert unbroken.trajectory is not None
     for _ in range(3):
-        resumption = logged_motion(log, logged_scenario(log))
+        resumption = resumption_of(log, logged_scenario(log))
         run = simulate(logged_scenario(log), budget=Budget(steps=50), resumption=resumption)
         assert run.outcome is Outcome.BUDGET_EXCEEDED
         write_log(run, tmp_path / "log.h5")
@@ -143,7 +143,7 @@ def test_run_that_has_ended_is_not_run_again(tmp_path: Path) -> None:
 def test_samples_that_do_not_belong_to_the_scenario_are_refused(tmp_path: Path, spoil, said: str) -> None:
     log = broken_off(load_scenario(STEP), tmp_path / "log.h5", 40)
     with pytest.raises(LogError, match=said):
-        logged_motion(replace(log, **spoil(log)), logged_scenario(log))
+        resumption_of(replace(log, **spoil(log)), logged_scenario(log))
 
 
 def _without(log: Log, name: str) -> dict[str, np.ndarray]:
@@ -160,10 +160,10 @@ def test_columns_of_a_log_give_back_the_states_that_they_show(name: str) -> None
     scenario = load_scenario(SCENARIOS / f"{name}.toml")
     dynamics = Dynamics(scenario.scene)
     assert isinstance(scenario.study, MotionStudy)
-    stretches = spans(scenario.profiles, scenario.study.duration)
+    stretches = cut_into_intervals(scenario.profiles, scenario.study.duration)
     times = np.linspace(0.0, scenario.study.duration, 4)
     states = np.random.default_rng(0).normal(0.0, 1e-3, (4, dynamics.state_size))
-    shown = observe_trajectory(dynamics, times, states, inputs_of(stretches, times), np.zeros(4), {})
+    shown = observe_trajectory(dynamics, times, states, inputs_at(stretches, times), np.zeros(4), {})
     resumption = Resumption(Solver(), {}, columns_of(shown))
     found, _ = resumption.states(dynamics, stretches)
     np.testing.assert_allclose(found, states, rtol=1e-12, atol=1e-15)

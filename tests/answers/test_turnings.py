@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from continuum_dyn.answers.turnings import monotonic_ways, turnings
+from continuum_dyn.answers.turnings import monotonic_branches, turnings
 
 
 def test_turning_points_are_the_extremes_of_a_sine() -> None:
@@ -21,9 +21,9 @@ def test_ripples_that_are_smaller_are_no_turning_points() -> None:
 def test_what_stays_or_only_rises_has_no_turning_points() -> None:
     assert turnings(np.ones(5), 0.0).size == 0
     assert turnings(np.arange(5.0), 0.0).size == 0
-    assert monotonic_ways(np.ones(5), 0.0) == []
+    assert monotonic_branches(np.ones(5), 0.0) == []
 
 
 def test_ways_leave_out_where_the_signal_stays() -> None:
     signal = np.array([0.0, 0.0, 1.0, 2.0, 2.0, 2.0, 1.5, 1.0, 1.0])
-    assert monotonic_ways(signal, 0.1) == [slice(1, 4), slice(5, 8)]
+    assert monotonic_branches(signal, 0.1) == [slice(1, 4), slice(5, 8)]
