@@ -12,7 +12,10 @@ from processes import CHECKOUT, RUN, SCENARIOS, succeeded
 
 SCENARIO = SCENARIOS / "step_response.toml"
 OTHERS = {
-    "one more effect": ("inertia = {}", "inertia = {}\nmass_damping = { mass_damping_rate = 20.0 }"),
+    "one more effect": (
+        "rotary_inertia = {}",
+        "rotary_inertia = {}\nmass_damping = { mass_damping_rate = 20.0 }",
+    ),
     "a cable that rubs": ("hole_offset = 0.008", "hole_offset = 0.008\nfriction = 0.2"),
 }
 """Other structures of equations, by what is put in place of what."""
