@@ -41,7 +41,7 @@ benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 	$(BIN)/python benchmarks/newton_iteration.py
 	$(BIN)/python benchmarks/integrators.py
 	$(BIN)/python benchmarks/scaling.py
-	$(BIN)/python benchmarks/warm_run.py
+	$(BIN)/python benchmarks/start_up.py
 	$(BIN)/python benchmarks/energy.py
 
 pictures: $(VENV)/dev ## Make the pictures of the README and the pages again.
