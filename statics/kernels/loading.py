@@ -178,7 +178,7 @@ def _callback(kernel: Kernel, name: str) -> Any:
 
 
 def _shape(kernel: Kernel, array: str, n: int) -> tuple[int, ...]:
-    return (max(1, len(kernel.inputs)),) if array == "inputs" else (n, kernel.widths[array])
+    return (max(1, len(kernel.inputs)),) if array == "inputs" else (n, kernel.widths.get(array, 0))
 
 
 def run_interpreted(
