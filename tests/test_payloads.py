@@ -29,7 +29,7 @@ from statics.kernels.slots import SCALARS
 from statics.passes.rest_passes import REST
 
 PIECES = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0], [0.0, 0.7, 0.0, 0.0, 0.0, 0.0]])
-TENSION = PIECES[:, 1]
+TENSION = PIECES[:, 1].copy()
 
 
 def laden(scene: Scene, *payloads: Payload) -> Scene:
