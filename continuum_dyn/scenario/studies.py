@@ -1,5 +1,6 @@
 """Kinds of study: equilibrium, ramp, motion, step response."""
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
@@ -21,7 +22,7 @@ MAX_STORED = 20_000_000
 """Largest number of segments times samples that a log may hold."""
 
 
-class StudyKind:
+class StudyKind(ABC):
     """Base of the studies: what others ask of each, answered for an arm at rest."""
 
     takes_lists: ClassVar[bool] = False
@@ -39,9 +40,9 @@ class StudyKind:
         """Whether equilibria are followed through folds, by arc length."""
         return False
 
+    @abstractmethod
     def check(self, scenario: "Scenario") -> None:
         """Raise ``InputError`` if the study does not accept the scenario."""
-        raise NotImplementedError
 
     def input_rows(self, scenario: "Scenario") -> np.ndarray:
         """Inputs of each equilibrium, shape (points, inputs), in the order of ``Scene.inputs``."""

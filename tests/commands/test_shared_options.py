@@ -52,9 +52,16 @@ def test_without_cache_all_is_compiled_anew_to_the_same_answer_and_nothing_is_ke
 ) -> None:
     kept = runner.invoke(app, ["run", STILL, "--json", "--out", str(tmp_path)])
     monkeypatch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path / "kernels"))
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
-    result = runner.invoke(app, ["run", STILL, "--no-cache", "-v", "--json", "--out", str(tmp_path)])
+    command = ["run", STILL, "--no-cache", "-v", "--json", "--out", str(tmp_path)]
+    program = [
+        sys.executable,
+        "-m",
+        "continuum_dyn",
+        *command,
+    ]  # this process has its functions
+    result = subprocess.run(program, capture_output=True, text=True, check=True)
     assert json.loads(result.stdout)["tip"] == json.loads(kept.stdout)["tip"]
     assert not (tmp_path / "kernels").exists()
     assert not list((tmp_path / "temporary").iterdir())
