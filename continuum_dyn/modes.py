@@ -25,7 +25,7 @@ MOST_DENSE = 128
 SMALL = 1e-6
 """Change of a bend angle (rad) by which accelerations are differenced."""
 NEUTRAL = 1e-7
-"""Part of a rate's size below which its growth is rounding."""
+"""Largest growth over a rate's size that is rounding."""
 WITHIN = 1e-3
 """Relative error allowed to the iteration for the largest eigenvalue."""
 
@@ -103,7 +103,7 @@ class Mode:
 
     @property
     def kind(self) -> str:
-        """What it does: "swings", "creeps" (back), "flutters" or "diverges"."""
+        """Kind of motion: "swings", "creeps" (back), "flutters" or "diverges"."""
         if self.grows:
             return "flutters" if self.swings else "diverges"
         return "swings" if self.swings else "creeps"
@@ -165,7 +165,7 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
 
 
 def still(inputs: np.ndarray) -> Interval:
-    """What drives the scene, staying as it is."""
+    """An interval of constant inputs."""
     return cut_into_intervals(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
 
 

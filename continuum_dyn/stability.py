@@ -36,7 +36,7 @@ class Growth:
 
 
 def growth_about(dynamics: Dynamics, point: Equilibrium) -> Growth | None:
-    """What grows of the small motions about an equilibrium, under its inputs; None if nothing does."""
+    """Fastest growing small motion about an equilibrium under its inputs; None if nothing grows."""
     rates = _eigenvalues(dynamics, point)
     growth, turning, sizes = np.real(rates), np.imag(rates), np.abs(rates)
     grow = (growth > NEUTRAL * sizes) & (turning >= 0.0) & (sizes > NEUTRAL * sizes.max())
@@ -47,7 +47,7 @@ def growth_about(dynamics: Dynamics, point: Equilibrium) -> Growth | None:
 
 
 def _eigenvalues(dynamics: Dynamics, point: Equilibrium) -> Any:
-    """Those of the linearized motion, 1/s; without damping only one of each two of opposite sign."""
+    """Rates of the linearized motion, 1/s; without damping only one of each two of opposite sign."""
     size, span = dynamics.size, still(point.inputs)
     jacobian = linearized(dynamics, dynamics.state(point.coordinates), span)
     if jacobian[size : 2 * size, size : 2 * size].any():

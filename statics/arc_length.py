@@ -92,7 +92,7 @@ def follow(
     start: np.ndarray | None = None,
     steps: Iterable[object] = range(MOST_STEPS),
 ) -> Path:
-    """Likewise for inputs, shape (points, inputs), and a start's coordinates; one step for each of ``steps``.
+    """Path for inputs, shape (points, inputs), and a start's coordinates; one step for each of ``steps``.
 
     Raises ``InputError`` for scenes without a potential.
     """
@@ -104,7 +104,7 @@ def follow(
 
 
 def hindrances(scene: Scene) -> list[str]:
-    """What keeps a scene's paths from being followed: stability is not known, or depends on the way back."""
+    """Effects that keep a scene's paths from being followed: stability is unknown, or depends on history."""
     friction = ["friction"] if any(kind.rubs for kind in scene.cable_kinds) else []
     return [*scene.without_potential, *friction]
 

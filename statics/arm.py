@@ -68,7 +68,7 @@ class Cable:
 
 
 class CableKind(NamedTuple):
-    """What makes a cable's equations: whether its length is given, not its tension, and whether it rubs."""
+    """Kind of a cable's equations: whether its length is given, not its tension, and whether it rubs."""
 
     driven_by_length: bool = False
     rubs: bool = False
@@ -115,7 +115,7 @@ class Payload:
 
 @dataclass(frozen=True, config=STRICT)
 class Base:
-    """Where the arm is mounted: the core starts at (x, y), m, at an ``angle`` (rad) to the x axis.
+    """Mount of the arm: the core starts at (x, y), m, at an ``angle`` (rad) to the x axis.
 
     One that ``moves`` is there at the start, and what it does then is an input of the motion.
     """
@@ -251,7 +251,7 @@ class Arm:
 
     @property
     def disk_nodes(self) -> slice:
-        """Those nodes, of all in a row, that are disks."""
+        """Indices of the nodes that are disks."""
         return slice(self.subsegments - 1, None, self.subsegments)
 
     @property
@@ -280,7 +280,7 @@ class Arm:
         return any(cable.holes_differ for cable in self.cables)
 
     def segment_columns(self) -> dict[str, np.ndarray]:
-        """What the arm knows of each segment, by glossary name, shape (segments,)."""
+        """Values on each segment, by glossary name, shape (segments,)."""
         columns = {"rest_length": self.rest_lengths}
         columns["disk_spacing"] = self._along("disk_spacing")
         columns["reference_curvature"] = self._along("reference_curvature")
@@ -314,7 +314,7 @@ class Arm:
         return np.repeat(self.per_disk(name), self.subsegments)
 
     def node_columns(self) -> dict[str, np.ndarray]:
-        """What the arm knows of each node, by glossary name, shape (segments,)."""
+        """Values on each node, by glossary name, shape (segments,)."""
         columns = {}
         if self.knows("disk_mass"):
             columns["node_mass"] = self.at_disks(self.per_disk("disk_mass")) + self._core_ends()
@@ -363,13 +363,13 @@ class Arm:
         return not np.all(np.sum(masses, axis=0) > 0.0)
 
     def at_disks(self, values: np.ndarray | float) -> np.ndarray:
-        """What stands on disks only, shape (disks,) or a scalar, over all nodes, shape (segments,)."""
+        """Spread values on disks, shape (disks,) or a scalar, over all nodes, shape (segments,)."""
         spread = np.zeros(self.segments)
         spread[self.disk_nodes] = values
         return spread
 
     def on_nodes(self, of_segments: np.ndarray) -> np.ndarray:
-        """What is spread along segments, half of each one's on either end, shape (segments,).
+        """Put half of each segment's value on either end, shape (segments,).
 
         The base takes the other half of the first.
         """

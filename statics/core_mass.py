@@ -1,4 +1,4 @@
-"""Where the core's own mass stands: quadrature along each segment.
+"""Quadrature of the core's own mass along each segment.
 
 Lobatto's rule with four points (Abramowitz and Stegun 1964, 25.4.32). Two of them are the segment's ends,
 nodes that carry mass anyway, so only two points are left that do not; Gauss's rule of the same degree, five,
@@ -9,8 +9,8 @@ power of s: the work of its weight and its kinetic energy, of the fourth, come o
 from math import sqrt
 
 AT_END = 1 / 12
-"""Part of a segment's mass on either of its ends."""
+"""Mass on either end of a segment, over the segment's."""
 AT_POINT = 5 / 12
-"""Part of a segment's mass on each of the points between."""
+"""Mass on each of the points between, over the segment's."""
 FRACTIONS = ((1 - 1 / sqrt(5)) / 2, (1 + 1 / sqrt(5)) / 2)
-"""How far along the segment these are, as parts of its length."""
+"""Distances of these points along the segment, over its length."""

@@ -33,7 +33,7 @@ _OUTCOMES = {
 
 
 class Critical(IntEnum):
-    """What becomes of a path of equilibria where one of them is about to lose or to gain stability."""
+    """Change of a path of equilibria at one that is about to lose or gain stability."""
 
     NO = 0
     FOLD = 1
@@ -95,7 +95,7 @@ class Equilibrium:
 
     @property
     def drive(self) -> str:
-        """What it is under, in words: tensions and load factors."""
+        """Tensions and load factors, in words."""
         parts = []
         if self.tension.size:
             parts.append(f"tension {', '.join(f'{tau:g}' for tau in self.tension)} N")
@@ -110,7 +110,7 @@ class Equilibrium:
 
     @property
     def poses(self) -> Poses:
-        """Those of the base and all disks."""
+        """Poses of the base and all disks."""
         base = (0.0 if value is None else value for value in (self.base_x, self.base_y, self.base_theta))
         of_disks = zip(base, (self.disk_x, self.disk_y, self.disk_theta), strict=True)
         x, y, theta = (np.append(start, values) for start, values in of_disks)
@@ -124,7 +124,7 @@ class Equilibrium:
 
 
 def _outcome(ended: int, negative: int) -> Outcome:
-    """How a search ended, with the number of unstable directions where it is known."""
+    """Outcome of a search, with the number of unstable directions where it is known."""
     if ended == search.BALANCED and negative > 0:
         return Outcome.UNSTABLE_EQUILIBRIUM
     return _OUTCOMES[ended]

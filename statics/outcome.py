@@ -1,4 +1,4 @@
-"""How a computation ended: one enumeration for logs, JSON and exit statuses."""
+"""Outcomes of a computation: one enumeration for logs, JSON and exit statuses."""
 
 from enum import StrEnum
 

@@ -65,7 +65,7 @@ class Scene:
 
     @cached_property
     def structure(self) -> Structure:
-        """What the scene's equations are derived from."""
+        """Structure that the scene's equations are derived from."""
         return Structure(
             effects=tuple(type(effect) for effect in self.effects),
             coordinates=self.coordinates,
@@ -82,14 +82,14 @@ class Scene:
 
     @property
     def at_rest(self) -> "Scene":
-        """The same scene with only those effects that act at rest, on a base that does not move."""
+        """This scene with only those effects that act at rest, on a base that does not move."""
         arm = self.arm
         if arm.base is not None and arm.base.moves:
             arm = replace(arm, base=replace(arm.base, moves=False))
         return Scene(arm, (effect for effect in self.effects if effect.acts_at_rest))
 
     def without(self, name: str) -> "Scene":
-        """The same scene without the effect of that name; without cables none can rub, either."""
+        """This scene without the effect of that name; without cables none can rub, either."""
         gone = {name, "cable_friction"} if name == "cables" else {name}
         return Scene(self.arm, (effect for effect in self.effects if effect.name not in gone))
 
@@ -105,7 +105,7 @@ class Scene:
 
     @cached_property
     def cable_kinds(self) -> tuple[CableKind, ...]:
-        """What makes the equations of each cable in play."""
+        """Kinds of the equations of each cable in play."""
         rubs = self.has("cable_friction")
         cables = self.arm.cables[: self.cables]
         return tuple(CableKind(cable.driven_by_length, rubs and cable.friction > 0) for cable in cables)
@@ -121,7 +121,7 @@ class Scene:
 
     @property
     def followers_among_driven(self) -> tuple[bool, ...]:
-        """Of every load that changes in time, whether it turns with its disk."""
+        """Flags of the loads that change in time: whether each turns with its disk."""
         return tuple(load.follower for load in self._loads.driven)
 
     @property
@@ -131,7 +131,7 @@ class Scene:
 
     @property
     def without_potential(self) -> tuple[str, ...]:
-        """What puts in work without having a potential, in words; friction, which has none, only takes it."""
+        """Loads that put in work without a potential, in words; friction, which has none, only takes it."""
         follows = self.has_followers or any(self.followers_among_driven)
         return ("follower loads",) if follows else ()
 
@@ -157,7 +157,7 @@ class Scene:
         return [number for number, kind in enumerate(self.cable_kinds) if kind.driven_by_length]
 
     def held(self, inputs: np.ndarray) -> np.ndarray:
-        """Those inputs with all that moves held where it is: rates and accelerations are zero."""
+        """Inputs with zero rates and accelerations of all that moves."""
         moving = [name.startswith(("cable_displacement_rate", *BASE_MOTION)) for name in self.inputs]
         still = inputs.copy()
         still[..., : len(moving)][..., moving] = 0.0

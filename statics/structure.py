@@ -18,7 +18,7 @@ from statics.errors import InputError
 
 @dataclass(frozen=True)
 class Structure:
-    """What changes the equations of a scene; the derivation is given this and nothing else.
+    """Everything that changes the equations of a scene; the derivation is given this and nothing else.
 
     ``effects`` are the classes of the scene's effects; ``coordinates`` and ``inputs`` the names of a
     segment's coordinates and of the numbers that drive the scene; ``payloads`` the largest number of them on

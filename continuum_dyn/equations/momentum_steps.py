@@ -68,7 +68,7 @@ def _name_partial_rates(trace: Trace, forces: SceneForces, reach: Reach) -> None
 
 
 def _partial_rate(reach: Reach) -> sp.Matrix:
-    """The same by name, shape (2, dofs)."""
+    """Partial rates by name, shape (2, dofs)."""
     name = f"{reach.prefix}partial_rate"
     return sp.Matrix(*reach.by_q.shape, lambda axis, a: symbol(f"{name}_{axis}{a}"))
 

@@ -57,7 +57,7 @@ def _far_velocity(
 
 
 def _from_base(forces: SceneForces, near: list[sp.Symbol], far: list[Any]) -> dict[str, tuple[Any, Any]]:
-    """What is carried on of a disk's motion; before the first segment it is the base's."""
+    """Carried values of a disk's motion; before the first segment they are the base's."""
     return {
         str(name): (at_base(forces, str(name).replace("near", "base")), value)
         for name, value in zip(near, far, strict=True)
@@ -129,7 +129,7 @@ def disk_in_motion(trace: Trace, forces: SceneForces) -> tuple[Reach, dict[str, 
 
 
 def integrated(forces: SceneForces, account: str, at: dict[Any, Any]) -> Any:
-    """What a motion integrates of a power; of a moving base's it is a part, see ``transport.py``."""
+    """Integrand of an account of power; of a moving base's it is a part, see ``transport.py``."""
     of_base = booked(forces, "powers", "transport_power", at) if account == "input_power" else 0
     return booked(forces, "powers", account, at) + of_base
 
@@ -165,7 +165,7 @@ def _in_motion(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], dict[
 
 
 def measuring_steps(forces: SceneForces) -> list[Step]:
-    """What a kernel in motion must measure first: nothing without coupled cables."""
+    """Steps that measure coupled cables in motion; none without them."""
     if not forces.coupled:
         return []
     return [

@@ -1,4 +1,4 @@
-"""The same load-displacement pairs by virtual power: Kane's method.
+"""From load-displacement pairs to generalized forces by virtual power: Kane's method.
 
     Q_i = sum_j P_j . dr'_j/du_i
 

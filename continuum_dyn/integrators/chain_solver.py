@@ -16,10 +16,10 @@ BATCH = 256
 """Most internal steps to one step of SciPy's: a call through ``solve_ivp`` costs as much as one of them."""
 
 FIRST_PART = 0.01
-"""Part of the tolerance by which the first step may displace a disk: it resolves the layer after a jump."""
+"""Largest displacement of a disk in the first step, over the tolerance: it resolves a jump."""
 
 LEAST_ROUNDINGS = 100.0
-"""Of the time: a step after a span of one or two of them is as long as so many."""
+"""Shortest step after an interval of one or two roundings of the time, in such roundings."""
 
 CORNER_STEP = 0.1
 """First step after a corner of an input, at most, in radians of the arm's lowest frequency."""

@@ -14,7 +14,7 @@ BATCH = 256
 """Most internal steps to one step of SciPy's."""
 
 ROUNDING = 1e-17
-"""Part of the arm's length by which the last iteration of a step may displace a disk."""
+"""Largest displacement of a disk in a step's last iteration, over the arm's length."""
 
 
 class MidpointSolver(OdeSolver):

@@ -50,7 +50,7 @@ Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 MOST_ITERATIONS = 8
 """Newton iterations after which a stage is given up."""
 STAGE_PART = 0.02
-"""Part of the tolerance that a stage's equations may be off by."""
+"""Largest error of a stage's equations, over the tolerance."""
 ROOT_5 = math.sqrt(5.0)
 SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 
@@ -69,7 +69,7 @@ def prepare(
     known_q: np.ndarray,
     known_u: np.ndarray,
 ) -> None:
-    """What stage s knows from the stages before it, and the prediction of its w; rows of all coordinates.
+    """Sum what stage s takes from the stages before it, and predict its w; rows of all coordinates.
 
     One stage after the other, so that the inner loops run on vectors.
     """

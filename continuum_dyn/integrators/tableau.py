@@ -151,4 +151,4 @@ DOPRI8 = Tableau(
     a=_ends_in_weights(DOP853.A, DOP853.B),
     error_weights=DOP853.E5,
 )
-"""Of order eight; its error estimate, and so the order that steps are chosen by, is that of order five."""
+"""The method of order eight; its error estimate, by which steps are chosen, is that of order five."""

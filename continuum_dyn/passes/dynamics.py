@@ -17,7 +17,7 @@ LEDGER = ("kinetic_energy", "elastic_energy", "gravity_energy", "input_power", "
 
 @dataclass(frozen=True)
 class Observation:
-    """What follows from states: arrays over samples and disks; ``ledger`` by glossary name.
+    """Quantities that follow from states: arrays over samples and disks; ``ledger`` by glossary name.
 
     ``coordinates`` and ``rates`` have shape (samples, segments, dofs). ``transport_energy`` (J) is what the
     state's ``input_work`` leaves out where the base moves: see ``transport.py``.
@@ -89,7 +89,7 @@ class Dynamics:
         return float(np.sqrt(stiffness / inertia)) if stiffness else 1.0
 
     def scales(self) -> np.ndarray:
-        """What one rad of bending compares with in each entry of the state, for absolute tolerances.
+        """Size of each entry of the state that compares with one rad of bending, for absolute tolerances.
 
         Elongations: the rest length; rates: the same times the arm's frequency; energies: the bending
         stiffness over the rest length. Shape of the state.

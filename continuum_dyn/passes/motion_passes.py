@@ -11,7 +11,7 @@ _FAMILIES = "continuum_dyn.equations.families"
 
 
 class MotionPasses(NamedTuple):
-    """Those of implicit and explicit steps, and of what is observed of a motion."""
+    """Passes of implicit and explicit steps, and of observations."""
 
     lengths: int
     beyond: int
@@ -27,7 +27,7 @@ class MotionPasses(NamedTuple):
 
 
 class LinearizedPasses(NamedTuple):
-    """Those of the accelerations, and of their derivatives along a change of coordinates and rates."""
+    """Passes of the accelerations, and of their derivatives along a change of coordinates and rates."""
 
     lengths: int
     beyond: int
@@ -44,7 +44,7 @@ class LinearizedPasses(NamedTuple):
 
 
 class MidpointPasses(NamedTuple):
-    """Those of the variational midpoint rule."""
+    """Passes of the variational midpoint rule."""
 
     lengths: int
     beyond: int

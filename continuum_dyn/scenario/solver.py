@@ -59,7 +59,7 @@ class Solver:
         return (self.rtol + self.atol) * length
 
     def with_rtol(self, rtol: float) -> "Solver":
-        """The same method with that relative tolerance, and an absolute one in proportion."""
+        """These settings with another relative tolerance, and an absolute one in proportion."""
         return replace(self, rtol=rtol, atol=1e-3 * rtol)
 
     @property

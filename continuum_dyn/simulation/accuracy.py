@@ -16,9 +16,9 @@ from continuum_dyn.simulation.trajectory import Trajectory
 LOOSEST, TIGHTEST = 1e-2, 1e-13
 """Bounds of the relative tolerance."""
 AIM = 0.3
-"""Part of the requested accuracy that the search aims at."""
+"""Error that the search aims at, over the requested accuracy."""
 ENOUGH = (1 / 15, 0.6)
-"""Parts of the requested accuracy between which an estimate ends the search."""
+"""Smallest and largest estimate that ends the search, over the requested accuracy."""
 MOST_TRIALS = 8
 SLOPE = 0.85
 """Power of the tolerance that the error is about proportional to."""

@@ -21,7 +21,7 @@ from statics.outcome import Outcome
 from statics.support.interruption import held
 
 TIME_PART = 0.25
-"""Part of the accuracy that a mesh's integration may use up; two extrapolated use nearly twice that."""
+"""Largest integration error of a mesh, over the accuracy; two extrapolated make nearly twice that."""
 
 
 def simulate(

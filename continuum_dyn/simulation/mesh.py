@@ -16,7 +16,7 @@ from continuum_dyn.simulation.trajectory import Trajectory
 from statics.equilibria import Equilibrium
 
 AIM = 0.5
-"""Part of the allowed error that the search aims at."""
+"""Error that the search aims at, over the allowed one."""
 MOST_TRIALS = 5
 
 Poses = TypeVar("Poses", Trajectory, Equilibrium)

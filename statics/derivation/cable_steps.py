@@ -28,7 +28,7 @@ def at_rest(trace: Trace, forces: SceneForces) -> tuple[dict[str, Any], dict[Any
 
 
 def measuring_steps(forces: SceneForces) -> list[Step]:
-    """What a kernel at rest must measure first: nothing without coupled cables."""
+    """Steps that measure coupled cables at rest; none without them."""
     return [lengths_step(forces), beyond_step(forces)] if forces.coupled else []
 
 

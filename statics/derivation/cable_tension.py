@@ -52,7 +52,7 @@ def stored_in_cables(cables: list[CableSymbols]) -> Any:
 
 
 def drive_potential(cables: list[CableSymbols]) -> Any:
-    """That energy less what a constant tension's potential would be, T_0 Lambda_1."""
+    """Stored energy of driven cables less a constant tension's potential, T_0 Lambda_1."""
     total = stored_in_cables(cables)
     for cable in cables:
         if cable.kind.driven_by_length:

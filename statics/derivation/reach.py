@@ -1,4 +1,4 @@
-"""How far a segment reaches: from its near disk to its far end, and to the points that carry its mass.
+"""Reaches of a segment: from its near disk to its far end, and to the points that carry its mass.
 
 The reach is a chord at half the angle of its end (Rone 2012, Eq. 11): in axes along it one number, and so its
 derivatives stay short.
@@ -92,5 +92,5 @@ def _along_chord(trace: Trace | None, prefix: str, half: Any) -> sp.Matrix:
 
 
 def core_reaches(forces: SceneForces, trace: Trace | None = None) -> list[tuple[CorePointSymbols, Reach]]:
-    """Those to the points of the core that carry mass, of which a scene may have none."""
+    """Reaches to the points of the core that carry mass, of which a scene may have none."""
     return [(point, reach_of(forces, trace, point)) for point in forces.core]

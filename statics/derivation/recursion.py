@@ -74,7 +74,7 @@ def far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[dict[str,
 
 
 def core_positions(trace: Trace, reaches: list[tuple[CorePointSymbols, Reach]]) -> dict[sp.Symbol, Any]:
-    """What the positions of the core's points stand for."""
+    """Values of the positions of the core's points."""
     near, at = sp.Matrix([symbol("near_x"), symbol("near_y")]), {}
     for point, reach in reaches:
         position = trace.let(f"{reach.prefix}position", near + reach.whole)
@@ -83,7 +83,7 @@ def core_positions(trace: Trace, reaches: list[tuple[CorePointSymbols, Reach]]) 
 
 
 def from_start(near: Any, before: Any) -> Any:
-    """What holds at the start of the segment's span: the near node's value if the segment is its first."""
+    """Value at the start of the segment's span: the near node's if the segment is its first."""
     start = symbol("starts_span")
     return start * near + (1 - start) * before
 
@@ -132,7 +132,7 @@ def _smallest(trace: Trace, forces: SceneForces, at: dict[Any, Any]) -> Any:
 
 
 def clearance_step(forces: SceneForces) -> Step:
-    """How far the arm is from a geometric limit, wherever its base is."""
+    """Outward: the clearance from a geometric limit, wherever the base is."""
     trace, forces = Trace(), replace(forces, inputs=())
     frame = turn_frame(trace, forces)
     pose, at_disk = far_pose(trace, forces, reach_of(forces, trace))
@@ -223,7 +223,7 @@ def _named(name: str, value: sp.Matrix) -> sp.Matrix:
 
 
 def _named_matrix(symmetric: bool, name: str, value: sp.Matrix) -> sp.Matrix:
-    """Likewise for ``_let_matrix``."""
+    """The names that ``_let_matrix`` gave in an earlier step; numbers and symbols as they are."""
     named = sp.Matrix(
         *value.shape, lambda r, c: value[r, c] if value[r, c].is_Atom else symbol(f"{name}_{r}{c}")
     )
@@ -504,7 +504,7 @@ def _through_hole(
 
 
 def _slowing(dofs: int) -> sp.Matrix:
-    """What slows a search without a potential down: on bend angles it turns as a spring would, N m / rad.
+    """Damping of a search without a potential: on bend angles it turns as a spring would, N m / rad.
 
     On elongations it pulls with that over the square of the rest length.
     """

@@ -105,7 +105,7 @@ class SegmentSymbols:
         return self.displacement_at(1)
 
     def displacement_at(self, fraction: float) -> sp.Matrix:
-        """The same of the point of the core that is this part of the way along it."""
+        """Point of the core at a fraction of its length, in the near end's frame, shape (2, 1), m."""
         h = fraction * self.half_angle
         chord = fraction * self.length * Sigma(0, h)
         return sp.Matrix([chord * Sigma(-1, h), chord * h * Sigma(0, h)])

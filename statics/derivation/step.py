@@ -1,4 +1,4 @@
-"""What one segment contributes to a pass along the chain."""
+"""One segment's part of a pass along the chain."""
 
 from dataclasses import dataclass, field
 from typing import Any, Literal

@@ -28,7 +28,7 @@ Groups = list[tuple[Effect, list[Pair]]]
 """Effects, each with its pairs at one place."""
 
 Symbols = SegmentSymbols | SpanSymbols | DiskSymbols | CorePointSymbols
-"""What the pairs at one place are written in."""
+"""Symbols of one site, in which its pairs are written."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class SceneForces:
 
     @property
     def coupled(self) -> list[CableSymbols]:
-        """Those whose tension depends on all the segments that they pass."""
+        """Cables whose tension depends on all the segments that they pass."""
         return [cable for cable in self.cables if cable.kind.coupled]
 
     @property

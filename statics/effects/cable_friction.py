@@ -10,7 +10,7 @@ from statics.effects.effect import Account, Pair, Place
 from statics.support.checked import STRICT
 
 SLIP_PART = 1e-6
-"""Part of the arm's length that a cable at rest slips through a hole until friction is three quarters."""
+"""Slip of a cable at rest, over the arm's length, at which friction is three quarters of its largest."""
 FAR = 1e6
 """Lengths of the arm by which a cable that has only been drawn in counts as having been longer."""
 
@@ -37,7 +37,7 @@ class CableFriction:
         return [Pair(cable.tension_lost, cable.length) for cable in at.cables if cable.kind.rubs]
 
     def columns(self, arm: Arm) -> dict[str, np.ndarray]:
-        """Those of the arm's cables, numbered, and what a cable at rest slips by and from, m.
+        """Friction of the arm's cables, numbered, and lengths that a cable at rest slips by and from, m.
 
         ``length_before`` is the cable's length beyond a hole before its last slip; here all have been drawn
         in from far.

@@ -34,7 +34,7 @@ class DiskLoad:
 
 
 DRIVEN = ("driven_force_x", "driven_force_y", "driven_moment")
-"""What a driven load's factor multiplies; its force is in the disk's axes if it follows."""
+"""Components that a driven load's factor multiplies; its force is in the disk's axes if it follows."""
 FOLLOWING = ("follower_force_x", "follower_force_y")
 """Sums over the constant loads that turn with their disk, in its axes."""
 

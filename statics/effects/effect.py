@@ -1,4 +1,4 @@
-"""What an effect is: the shape that every file beside this one has."""
+"""The protocol of an effect: the shape that every file beside this one has."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol

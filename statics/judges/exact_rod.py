@@ -88,7 +88,7 @@ class _Rod:
     cables: tuple[_Cable, ...]
 
     def under(self, part: float) -> "_Rod":
-        """The same rod under that part of its loads."""
+        """This rod under a part of its loads."""
         cables = tuple(cable._replace(tension=part * cable.tension) for cable in self.cables)
         return replace(self, dead_load=part * self.dead_load, weight=part * self.weight, cables=cables)
 
@@ -264,7 +264,7 @@ def _check_stability(rod: _Rod, loads: np.ndarray) -> None:
 
 
 def _holes_met(rod: _Rod, loads: np.ndarray) -> str | None:
-    """Of which cable two holes have all but met, as the end of a sentence."""
+    """Name of the cable of which two holes have all but met, as the end of a sentence."""
     pose = _node_poses(_hung_ends(rod, loads)[1])[:: rod.parts]
     met = [cable.name for cable in rod.cables if _gaps(cable, pose).min() < MET * rod.parts]
     return f"there the holes of cable '{met[0]}' meet" if met else None

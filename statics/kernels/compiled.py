@@ -59,7 +59,7 @@ class _KeptCode:
 
     @property
     def cache_path(self) -> str:
-        """Where files are kept."""
+        """Folder of the kept files."""
         return str(kernel_folder())
 
     def load_overload(self, signature: Any, target: Any) -> CompileResult | None:

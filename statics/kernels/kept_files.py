@@ -82,7 +82,7 @@ def _is_ours(status: os.stat_result) -> bool:
 
 
 def read_sealed(path: Path) -> bytes | None:
-    """What was once written to that file; None if it is missing, damaged, or not the user's own."""
+    """Content once written to that file; None if it is missing, damaged, or not the user's own."""
     try:
         with path.open("rb") as file:
             if not _is_ours(os.fstat(file.fileno())):

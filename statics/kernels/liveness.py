@@ -26,7 +26,7 @@ class Body:
 
     @property
     def start(self) -> list[Any]:
-        """What the first segment is given."""
+        """Values that the first segment is given."""
         return [value for value, _ in self.passed_on.values()]
 
 

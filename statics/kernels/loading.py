@@ -140,7 +140,7 @@ def load(structure: Structure, family: Family) -> Kernel:
 
 
 def load_interpreted(structure: Structure, family: Family) -> Kernel:
-    """The same passes as plain Python, called back from compiled code: for tests and for a debugger."""
+    """The kernel with its passes as plain Python, called back from compiled code: for tests and debuggers."""
     return Kernel(_kept_text(structure, family, kernel_path(structure, family)), family, _interpreted)
 
 

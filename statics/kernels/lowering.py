@@ -37,7 +37,7 @@ class LoweringError(ContinuumError):
 
 @dataclass(frozen=True)
 class PassSignature:
-    """How a pass is called: names of what it is given, of its results, and of its arrays in order."""
+    """Signature of a pass: names of what it is given, of its results, and of its arrays in order."""
 
     direction: str
     given: tuple[str, ...]

@@ -64,7 +64,7 @@ class _Columns:
 
 
 def _columns(forces: SceneForces, steps: Sequence[Step], bodies: list[Body], owners: Owners) -> _Columns:
-    """Where every symbol that a step needs from elsewhere is found."""
+    """Find the array and column of every symbol that a step needs from elsewhere."""
     text: dict[sp.Symbol, str] = {}
     for array, symbols in (
         ("q", forces.segment.coordinates),
@@ -90,7 +90,7 @@ def _columns(forces: SceneForces, steps: Sequence[Step], bodies: list[Body], own
 
 
 def _constants(forces: SceneForces, bodies: list[Body], columns: _Columns) -> str:
-    """What a caller must know: names of the columns, widths of the arrays, and every pass."""
+    """Constants for the caller: names of the columns, widths of the arrays, and every pass."""
     dofs = len(forces.segment.coordinates)
     widths = dict.fromkeys(("q", "u", "w", "q_change", "u_change", "change"), dofs)
     for body in bodies:

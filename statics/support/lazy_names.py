@@ -8,7 +8,7 @@ from typing import Any, TypeGuard
 
 
 def loaded_when_asked_for(file: str) -> Callable[[str], Any]:
-    """What a package's ``__getattr__`` does for the names that its ``file`` imports if ``TYPE_CHECKING``."""
+    """``__getattr__`` of a package, for the names that its ``file`` imports if ``TYPE_CHECKING``."""
     (block,) = (node for node in ast.parse(Path(file).read_text(encoding="utf-8")).body if _is_lazy(node))
     imports = [node for node in block.body if isinstance(node, ast.ImportFrom)]
     homes = {alias.name: node.module or "" for node in imports for alias in node.names}

@@ -1,4 +1,4 @@
-"""What takes its time, told to whoever listens to the logger ``continuum_dyn``."""
+"""Durations of stages, reported to the logger ``continuum_dyn``."""
 
 import logging
 import time
