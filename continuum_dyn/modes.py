@@ -39,7 +39,7 @@ def rates(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[float, flo
 
 def linearized(dynamics: Dynamics, y: np.ndarray, span: Interval) -> np.ndarray:
     """d(rate)/dy. Raises ``InputError`` where it is beyond floating point."""
-    matrix = dynamics.jacobian(span.start, y, span, once=True)
+    matrix = dynamics.jacobian(span.start, y, span)
     if not np.isfinite(matrix).all():
         raise InputError(
             "the equations of motion overflow at the start: numbers of the scene are too far apart. "

@@ -7,7 +7,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from pickle import UnpicklingError
 from random import Random
 
 import pytest
@@ -61,18 +60,16 @@ def with_a_bit_changed(whole: bytes) -> bytes:
 def test_damaged_files_are_made_again(folder: Path, damaged: Callable[[bytes], bytes]) -> None:
     assert answer(3.0) == 7.0
     before = kept(folder)
-    assert len(before) == 3  # the text, and the code of two functions
+    assert len(before) == 3  # the text, its machine code, and that of a function
     for path in folder.iterdir():
         path.write_bytes(damaged(path.read_bytes()))
     assert answer(3.0) == 7.0
     assert kept(folder) == before
 
 
-@pytest.mark.parametrize(
-    ("one", "other"), [("times_3*.py", "times_5*.py"), ("*.times.*", "*.times_plus_one.*")]
-)
+@pytest.mark.parametrize(("one", "other"), [("times_3*.py", "times_5*.py"), ("times_3*[!y]", "times_5*[!y]")])
 def test_code_that_was_renamed_to_other_code_is_not_taken_for_it(folder: Path, one: str, other: str) -> None:
-    """Neither a kernel's text nor the machine code of a function that takes the same arguments."""
+    """Neither a kernel's text nor its machine code."""
     assert (answer(3.0), answer(5.0)) == (7.0, 11.0)
     pairs = list(zip(folder.glob(one), folder.glob(other), strict=True))
     assert len(pairs) == 1
@@ -100,15 +97,16 @@ def test_a_file_that_others_may_write_to_is_not_loaded(folder: Path, tmp_path: P
 
 
 def test_machine_code_that_others_may_write_to_is_not_loaded(folder: Path) -> None:
-    """Not even where its seal is right; here it holds no code, so that loading it is an error."""
-    answer(3.0)
-    for path in [path for path in folder.iterdir() if path.suffix != ".py"]:
-        write_sealed(path, b"no code")
-    with pytest.raises(UnpicklingError):
-        answer(3.0)  # so it is loaded where it is the user's own
+    """Not even where its seal is right; here it holds the code of another kernel."""
+    assert (answer(3.0), answer(5.0)) == (7.0, 11.0)
+    one, other = (path for path in sorted(folder.glob("times_*")) if path.suffix != ".py")
+    code = read_sealed(other)
+    assert code is not None
+    write_sealed(one, code)
+    assert answer(3.0) == 11.0  # so it is loaded where it is the user's own
     for path in folder.iterdir():
         path.chmod(0o666)
-    assert answer(3.0) == 7.0
+    assert (answer(3.0), answer(5.0)) == (7.0, 11.0)
     assert {path.stat().st_mode & 0o777 for path in folder.iterdir()} == {0o600}
 
 
@@ -153,9 +151,9 @@ def small_disk(folder: Path, room: str) -> Iterator[None]:
         subprocess.run(["umount", str(folder)], check=True)
 
 
-@pytest.mark.parametrize(("taken", "files"), [(64, 0), (60, 1), (24, 2)])
+@pytest.mark.parametrize(("taken", "files"), [(64, 0), (60, 1), (56, 2)])
 def test_a_full_disk_is_told_and_leaves_nothing_broken(folder: Path, taken: int, files: int) -> None:
-    """Full before the text is written, or before one of the two functions is, inside of numba's compiler."""
+    """Full before the text is written, or its machine code, or that of the function that calls it."""
     with small_disk(folder, "64k"):
         (folder / "ballast").write_bytes(bytes(1024 * taken))
         with pytest.raises(KernelCacheError, match=r"No space left.*CONTINUUM_DYN_CACHE"):
@@ -185,21 +183,14 @@ def test_two_processes_at_once_fill_an_empty_folder(folder: Path) -> None:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
     assert [process.communicate("go\n", timeout=120) for process in running] == [("7.0\n11.0\n", "")] * 2
-    assert len(kept(folder)) == 4  # two texts, and the code of two functions
-
-
-def test_numbas_own_cache_stays_empty(tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path / "numba"))
-    assert answer(3.0) == 7.0
-    assert not (tmp_path / "numba").exists()
-    assert len(kept(folder)) == 3
+    assert len(kept(folder)) == 5  # two texts, their machine code, and that of a function
 
 
 def run_unactuated(out: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    """The command line with ``--no-cache``; its kernels are interpreted, which they may be anywhere."""
+    """The command line with ``--no-cache``."""
     return subprocess.run(
         [sys.executable, "-c", CLI, "--no-cache", "run", str(UNACTUATED), "--json", "--out", str(out)],
-        env={**os.environ, "NUMBA_DISABLE_JIT": "1", **environment},
+        env={**os.environ, **environment},
         capture_output=True,
         text=True,
         check=False,

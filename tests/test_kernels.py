@@ -48,22 +48,22 @@ def test_changed_numbers_compile_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
     at_rest, in_motion = load(run.scene.at_rest.structure, REST), load(structure, MOTION)
     modules = (newton, search, runge_kutta, observation)
     functions: list[Any] = [
-        each for module in modules for each in vars(module).values() if hasattr(each, "signatures")
+        each for module in modules for each in vars(module).values() if hasattr(each, "codes")
     ]
-    before = [len(function.signatures) for function in functions]
+    before = [len(function.codes) for function in functions]
     entered: list[Any] = [
         newton.find_stable,
         runge_kutta.advance,
         runge_kutta.interpolate,
         observation.observe,
     ]
-    assert all(len(function.signatures) > 0 for function in entered)
+    assert all(len(function.codes) > 0 for function in entered)
     monkeypatch.setattr(loading, "_compiled", None)
     for disks, stiffness in ((4, 2.0), (1, 1.0), (30, 0.5)):
         simulate(replace(run, scene=moving(rone2012(disks=disks, stiffness=stiffness, gravity=(1.0, -3.0)))))
     assert load(run.scene.at_rest.structure, REST) is at_rest
     assert load(structure, MOTION) is in_motion
-    assert [len(function.signatures) for function in functions] == before
+    assert [len(function.codes) for function in functions] == before
 
 
 def test_key_follows_structure_not_numbers() -> None:

@@ -28,6 +28,7 @@ from continuum_dyn.passes.motion_passes import MidpointPasses
 from statics.kernels.calling import run
 from statics.kernels.compiled import compiled
 from statics.kernels.slots import CLEARANCE, INPUT_POWER, LARGEST, SCALARS, STIFFNESS_WEIGHT
+from statics.passes.search import add_scaled, copy
 
 Arm = tuple[np.ndarray, np.ndarray, np.ndarray]
 Records = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -161,8 +162,8 @@ def advance(
             return row - 1, iterations
         input_work[row] = input_work[row - 1] + h * power
         for m in range(PAST - 1, 0, -1):
-            past[m] = past[m - 1]
-        past[0] = v
+            copy(past[m - 1], past[m])
+        copy(v, past[0])
         if bad:
             return row, iterations
     return rows - 1, iterations
@@ -199,7 +200,7 @@ def sample(
     qs, ps, input_work = records
     rows, n, dofs = qs.shape
     size = n * dofs
-    v, pull = np.empty((n, dofs)), np.empty((n, dofs))
+    v, pull, p = np.empty((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
     work, chain, scalars = np.empty((WORK, n, dofs)), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     for m in range(len(at)):
         row = min(int((at[m] - t) / h), rows - 1)
@@ -211,7 +212,9 @@ def sample(
         _, power = solve_step(
             passes, t + row * h, part, qs[row], ps[row], v, allowed, arm, chain, work, pull, scalars
         )
-        q, p = qs[row] + part * v, ps[row] - part * pull
+        q = found[m, :size].reshape((n, dofs))
+        add_scaled(qs[row], part, v, q)
+        add_scaled(ps[row], -part, pull, p)
         solve_step(passes, at[m], 0.0, q, p, v, allowed, arm, chain, work, pull, scalars)
-        found[m, :size], found[m, size : 2 * size] = q.ravel(), v.ravel()
+        copy(v, found[m, size : 2 * size].reshape((n, dofs)))
         found[m, 2 * size], found[m, 2 * size + 1] = input_work[row] + part * power, 0.0

@@ -292,8 +292,8 @@ def advance(
 def finite(row: np.ndarray) -> bool:
     """Whether every number of a row is finite; makes no array of its own."""
     good = True
-    for value in row:
-        good = good and math.isfinite(value)
+    for m in range(len(row)):
+        good = good and math.isfinite(row[m])
     return good
 
 

@@ -101,20 +101,19 @@ def rate(
     segments: np.ndarray,
     disks: np.ndarray,
     dofs: int,
-) -> np.ndarray:
-    """dy/dt: the right-hand side for any integrator."""
+    y_rate: np.ndarray,
+) -> None:
+    """Set ``y_rate`` to dy/dt: the right-hand side for any integrator."""
     n = segments.shape[0]
     size = n * dofs
     q, u = y[:size].reshape((n, dofs)), y[size : 2 * size].reshape((n, dofs))
     inputs, chain, scalars = np.empty(passes.inputs), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     inputs_at(t, pieces, inputs)
-    y_rate = np.empty_like(y)
     w = y_rate[size : 2 * size].reshape((n, dofs))
     acceleration(passes, q, u, inputs, segments, disks, chain, np.empty((2, n, dofs)), w, scalars)
     for m in range(size):
         y_rate[m] = y[size + m]
     y_rate[2 * size], y_rate[2 * size + 1] = scalars[INPUT_POWER], scalars[DISSIPATED_POWER]
-    return y_rate
 
 
 @compiled
@@ -126,14 +125,17 @@ def rate_jacobian(
     segments: np.ndarray,
     disks: np.ndarray,
     dofs: int,
-) -> np.ndarray:
-    """d(rate)/dy, exact: one tangent pass and one elimination for each coordinate and each rate.
+    jacobian: np.ndarray,
+) -> None:
+    """Set ``jacobian``, zero before, to d(rate)/dy, exact.
+
+    One tangent pass and one elimination for each coordinate and each rate.
 
     From M w = -r(q, u, w = 0) follows M dw = -(dr along dq, du at fixed w).
     """
     n = segments.shape[0]
     size = n * dofs
-    q, u = y[:size].copy().reshape((n, dofs)), y[size : 2 * size].copy().reshape((n, dofs))
+    q, u = y[:size].reshape((n, dofs)), y[size : 2 * size].reshape((n, dofs))
     inputs, chain, scalars = np.empty(passes.inputs), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     inputs_at(t, pieces, inputs)
     w, residual, descent = np.zeros((n, dofs)), np.empty((n, dofs)), np.empty((n, dofs))
@@ -146,7 +148,6 @@ def rate_jacobian(
     run(passes.substitute, n, scalars, chain, descent, w)
     run(passes.motion, n, scalars, q, u, w, inputs, segments, disks, chain)
     run(passes.residual, n, scalars, disks, chain, residual)
-    jacobian = np.zeros((y.shape[0], y.shape[0]))
     direction = np.zeros((2, n, dofs))
     q_change, u_change, w_change = direction[0], direction[1], np.empty((n, dofs))
     for column in range(2 * size):
@@ -166,7 +167,6 @@ def rate_jacobian(
             jacobian[size + m, column] = w_change[m // dofs, m % dofs]
         if column >= size:
             jacobian[k, column] = 1.0
-    return jacobian
 
 
 @compiled

@@ -58,13 +58,16 @@ class Dynamics:
     def rate(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
         """dy/dt."""
         kernel, *tables = self.linearized
-        return accelerations.rate(kernel.passes, t, y, span.pieces, *tables, self.dofs)
+        y_rate = np.empty_like(y)
+        accelerations.rate(kernel.passes, t, y, span.pieces, *tables, self.dofs, y_rate)
+        return y_rate
 
-    def jacobian(self, t: float, y: np.ndarray, span: Interval, *, once: bool = False) -> np.ndarray:
-        """d(rate)/dy, exact; ``once`` does without a compilation that a single one is not worth."""
+    def jacobian(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
+        """d(rate)/dy, exact."""
         kernel, *tables = self.linearized
-        function = getattr(accelerations.rate_jacobian, "py_func", None) if once else None
-        return (function or accelerations.rate_jacobian)(kernel.passes, t, y, span.pieces, *tables, self.dofs)
+        jacobian = np.zeros((y.size, y.size))
+        accelerations.rate_jacobian(kernel.passes, t, y, span.pieces, *tables, self.dofs, jacobian)
+        return jacobian
 
     def clearance(self, y: np.ndarray) -> float:
         """Smallest length or hole-to-hole length over L0."""

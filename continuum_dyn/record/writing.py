@@ -65,7 +65,7 @@ def attributes_of(run: "Run", complete: bool = True) -> dict[str, Any]:
 
 @cache
 def _versions() -> str:
-    packages = ("continuum-dyn", "numpy", "scipy", "sympy", "numba", "h5py")
+    packages = ("continuum-dyn", "numpy", "scipy", "sympy", "llvmlite", "h5py")
     return ", ".join(["python " + platform.python_version(), *(f"{p} {version(p)}" for p in packages)])
 
 

@@ -27,6 +27,7 @@ from statics.support.stages import stage
 
 _HERE = Path(__file__).parent
 _PRINTING = tuple(_HERE / f"{stem}.py" for stem in ("printing", "liveness", "loading"))
+_LOWERING = _HERE / "lowering.py"
 _SHARED = _HERE.parent / "derivation"
 
 _loaded: dict[Path, "Kernel"] = {}
@@ -145,12 +146,20 @@ def load_interpreted(structure: Structure, family: Family) -> Kernel:
 
 
 def _compiled(kernel: Kernel) -> Mapping[str, int]:
-    from statics.kernels.machine_code import MachineCode
+    from statics.kernels.machine_code import MachineCode, compile_text, machine_name
 
-    with stage(f"compiled passes of {kernel.family.name}"):
-        code = MachineCode(lower(kernel.tree, kernel.signatures, kernel.widths, SLOTS), kernel.signatures)
+    made_from = kernel.text, file_digest(_LOWERING, _LOWERING.stat().st_mtime_ns), machine_name()
+    key = hashlib.sha256(repr(made_from).encode()).hexdigest()[:24]
+    path = kernel_folder() / f"{kernel.family.name}.{key}"
+    file = read_sealed(path)
+    if file is None:
+        with stage(f"compiled passes of {kernel.family.name}"):
+            tree = ast.parse(kernel.text)
+            file = compile_text(lower(tree, kernel.signatures, kernel.widths, SLOTS))
+        write_sealed(path, file)
+    code = MachineCode(file)
     kernel.code = code  # pyright: ignore[reportAttributeAccessIssue]: keeps the machine code alive
-    return code.addresses
+    return {name: code.address(name) for name in kernel.signatures}
 
 
 def _interpreted(kernel: Kernel) -> Mapping[str, int]:

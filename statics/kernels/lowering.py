@@ -91,10 +91,8 @@ class _Unit:
 
     def constant(self, value: float) -> str:
         """A number, the same in every lane."""
-        bits = f"0x{struct.pack('>d', value).hex().upper()}"
-        if self.lanes == 1:
-            return bits
-        return f"<{', '.join([f'double {bits}'] * self.lanes)}>"
+        text = float_text(value)
+        return text if self.lanes == 1 else f"<{', '.join([f'double {text}'] * self.lanes)}>"
 
     def pass_function(self, name: str, signature: PassSignature) -> str:
         """A pass: its start, its loop over the segments, its results."""
@@ -344,7 +342,7 @@ class _Code:
 
     def power(self, base: str, exponent: ast.expr) -> str:
         """A constant power by repeated squaring; a negative one as 1 over it; half ones through a root."""
-        value = _number(exponent)
+        value = constant_number(exponent)
         if value is None or abs(value) > LARGEST_POWER or (2 * value) % 1:
             raise _refusal(exponent, "as an exponent ")
         if value < 0:
@@ -408,16 +406,21 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, str) and value.startswith(("%", "<", "0x"))
 
 
-def _number(node: ast.expr) -> float | None:
+def float_text(value: float) -> str:
+    """A float as LLVM reads it, to the last bit."""
+    return f"0x{struct.pack('>d', value).hex().upper()}"
+
+
+def constant_number(node: ast.expr) -> float | None:
     """A constant, with a sign, or a quotient of two such."""
     match node:
         case ast.Constant(value=int() | float() as number):
             return float(number)
         case ast.UnaryOp(op=ast.USub(), operand=operand):
-            value = _number(operand)
+            value = constant_number(operand)
             return None if value is None else -value
         case ast.BinOp(op=ast.Div(), left=left, right=right):
-            first, second = _number(left), _number(right)
+            first, second = constant_number(left), constant_number(right)
             return None if first is None or second is None else first / second
     return None
 

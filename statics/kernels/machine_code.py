@@ -1,29 +1,45 @@
-"""Machine code of the passes: LLVM's text compiled for this machine, in this process."""
+"""Machine code: LLVM's text compiled for this machine, to be kept and loaded."""
 
 import ctypes
-from collections.abc import Iterable
 from functools import cache
 
+import llvmlite
 import llvmlite.binding as llvm
 
 SPEED = 2
 """LLVM's level of optimization: 1 is hardly faster to compile, 3 no faster to run."""
 
 
-class MachineCode:
-    """Compiled functions and their addresses, which are valid as long as this lives."""
+def compile_text(text: str) -> bytes:
+    """Machine code of LLVM's text, as an object file."""
+    machine = _machine()
+    module = llvm.parse_assembly(text)
+    module.triple, module.data_layout = machine.triple, str(machine.target_data)
+    tuning = llvm.create_pipeline_tuning_options(speed_level=SPEED)
+    llvm.create_pass_builder(machine, tuning).getModulePassManager().run(
+        module, llvm.create_pass_builder(machine, tuning)
+    )
+    return machine.emit_object(module)
 
-    def __init__(self, text: str, names: Iterable[str]) -> None:
-        machine = _machine()
-        module = llvm.parse_assembly(text)
-        module.triple, module.data_layout = machine.triple, str(machine.target_data)
-        tuning = llvm.create_pipeline_tuning_options(speed_level=SPEED)
-        llvm.create_pass_builder(machine, tuning).getModulePassManager().run(
-            module, llvm.create_pass_builder(machine, tuning)
-        )
-        self.engine = llvm.create_mcjit_compiler(module, machine)
+
+class MachineCode:
+    """Functions of an object file, ready to be called; their addresses are valid as long as this lives."""
+
+    def __init__(self, file: bytes) -> None:
+        self.engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+        self.engine.add_object_file(llvm.ObjectFileRef.from_data(file))
         self.engine.finalize_object()
-        self.addresses = {name: self.engine.get_function_address(name) for name in names}
+
+    def address(self, name: str) -> int:
+        """Address of a function."""
+        return self.engine.get_function_address(name)
+
+
+@cache
+def machine_name() -> str:
+    """All that machine code depends on but its text: the compiler's version and the processor."""
+    features = llvm.get_host_cpu_features().flatten()
+    return f"llvmlite {llvmlite.__version__}, {llvm.get_host_cpu_name()}, {features}, O{SPEED}"
 
 
 def _machine() -> llvm.TargetMachine:
@@ -31,7 +47,7 @@ def _machine() -> llvm.TargetMachine:
     _initialize()
     features = llvm.get_host_cpu_features().flatten()
     target = llvm.Target.from_default_triple()
-    return target.create_target_machine(cpu=llvm.get_host_cpu_name(), features=features, opt=SPEED)
+    return target.create_target_machine(cpu=llvm.get_host_cpu_name(), features=features, opt=SPEED, jit=True)
 
 
 @cache
@@ -41,7 +57,7 @@ def _initialize() -> None:
     from statics.kernels.lowering import LIBRARY
 
     library = ctypes.CDLL(None)
-    for name in LIBRARY:
+    for name in (*LIBRARY, "pow"):
         if llvm.address_of_symbol(name) is None:
             address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value
             llvm.add_symbol(name, address or 0)

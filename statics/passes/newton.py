@@ -32,7 +32,7 @@ from statics.passes.search import (
     STABLE,
     TOWARDS_LIMIT,
     UNSTABLE,
-    advance,
+    add_scaled,
     clear,
     copy,
     largest,
@@ -163,7 +163,7 @@ def shorten(
     q, ``scalars`` hold its potential and clearance.
     """
     for _ in range(60):
-        advance(q, factor, change, trial)
+        add_scaled(q, factor, change, trial)
         pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
         fall = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
         if scalars[CLEARANCE] > TOWARDS_LIMIT * clearance and scalars[POTENTIAL] <= enough + fall:
@@ -189,12 +189,12 @@ def lengthen(
     """Double an accepted step while that lowers the potential: an indefinite matrix says little of length."""
     potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
     while 2.0 * factor <= longest:
-        advance(q, 2.0 * factor, change, trial)
+        add_scaled(q, 2.0 * factor, change, trial)
         pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
         if scalars[CLEARANCE] <= TOWARDS_LIMIT * clearance or scalars[POTENTIAL] >= potential:
             break
         factor, potential, clearance = 2.0 * factor, scalars[POTENTIAL], scalars[CLEARANCE]
-    advance(q, factor, change, trial)
+    add_scaled(q, factor, change, trial)
     pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
 
 
@@ -230,7 +230,7 @@ def leave_saddle(
     curvature = saddle_direction(passes, unit, chain, pivots, descent, change, scalars)
     slope = inner(residual, change)
     if slope > 0.0:
-        advance(change, -2.0, change, change)
+        add_scaled(change, -2.0, change, change)
         slope = -slope
     factor = shorten(
         passes,
@@ -294,12 +294,12 @@ def find_stable(
         single, turn = measure(change, unit)
         if single < AT_REST and not (coupled and single < FALLING * last):  # cables may catch in a small step
             if negative == 0:
-                advance(q, 1.0, change, q)
+                add_scaled(q, 1.0, change, q)
                 return STABLE, iteration
             eliminate(passes, 1.0, segments, disks, chain, residual, descent, pivots, scalars)
             run(passes.substitute, n, scalars, chain, descent, change)
             if measure(change, unit)[0] < FAR_FROM_REST:
-                advance(q, 1.0, change, q)
+                add_scaled(q, 1.0, change, q)
             return UNSTABLE, iteration
         slope, enough = inner(residual, change), potential
         if slope > -ROUNDING * scale:

@@ -31,7 +31,7 @@ from statics.passes.search import (
     LIMIT,
     NOT_FOUND,
     UNKNOWN,
-    advance,
+    add_scaled,
     copy,
     largest,
     measure,
@@ -92,7 +92,7 @@ def within_limits(
     ``trial`` is the accepted q, and ``scalars`` hold its clearance.
     """
     for _ in range(60):
-        advance(q, factor, change, trial)
+        add_scaled(q, factor, change, trial)
         pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
         if scalars[CLEARANCE] > 0.0:
             return factor

@@ -37,7 +37,7 @@ def measure(change: np.ndarray, rest_length: float) -> tuple[float, float]:
 
 
 @compiled
-def advance(q: np.ndarray, factor: float, change: np.ndarray, trial: np.ndarray) -> None:
+def add_scaled(q: np.ndarray, factor: float, change: np.ndarray, trial: np.ndarray) -> None:
     """Set trial to q + factor * change."""
     for i in range(q.shape[0]):
         for k in range(q.shape[1]):

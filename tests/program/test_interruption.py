@@ -127,7 +127,7 @@ def test_interrupted_motion_is_logged_up_to_there(tmp_path: Path) -> None:
     [
         "statics.kernels.loading:Family.write",
         "statics.kernels.loading:_compiled",
-        "statics.kernels.compiled:_KeptCode.save_overload",
+        "statics.kernels.compiled:_compile",
     ],
 )
 def test_interrupted_while_compiling_leaves_a_log_that_says_so(tmp_path: Path, place: str) -> None:
