@@ -51,42 +51,59 @@ class _Compiled:
 
     def __init__(self, python: Callable[..., Any]) -> None:
         self.python = python
-        self.declared = declared_kinds(python)
-        self.codes: dict[tuple[Kind, ...], _Code] = {}
+        self.codes: dict[tuple[Any, ...], _Code] = {}
 
     def __call__(self, *arguments: Any) -> Any:
         """The result. Raises ``ValueError`` for arrays with strides, ``TypeError`` for other faults."""
-        expected = len(self.declared)
-        if len(arguments) != expected:
-            raise TypeError(f"{self.python.__name__} takes {expected} arguments, not {len(arguments)}")
         given: list[Any] = []
-        kinds = tuple(
-            _flatten(argument, kind, given) for argument, kind in zip(arguments, self.declared, strict=True)
-        )
-        code = self.codes.get(kinds)
+        forms = _flatten(arguments, given)
+        code = self.codes.get(forms)
         if code is None:
-            code = self.codes[kinds] = _Code(self.python, kinds)
+            code = self.codes[forms] = _Code(self.python, self._kinds(forms))
         return code.call(given)
 
-
-def _flatten(value: Any, declared: str | None, given: list[Any]) -> Kind:
-    """Kind of an argument, whose cells are added to those given."""
-    if isinstance(value, np.ndarray):
-        given.append(address_of(value))
-        given.extend(value.shape)
-        return ArrayKind(value.ndim)
-    if isinstance(value, tuple):
-        parts = tuple(_flatten(part, None, given) for part in value)
-        return TupleKind(parts, getattr(value, "_fields", ()))
-    given.append(value)
-    return declared or _scalar_kind(value)
+    def _kinds(self, forms: tuple[Any, ...]) -> tuple[Kind, ...]:
+        declared = declared_kinds(self.python)
+        if len(forms) != len(declared):
+            raise TypeError(f"{self.python.__name__} takes {len(declared)} arguments, not {len(forms)}")
+        return tuple(kind or _kind(form) for form, kind in zip(forms, declared, strict=True))
 
 
-def _scalar_kind(value: Any) -> str:
+def _flatten(values: tuple[Any, ...], given: list[Any]) -> tuple[Any, ...]:
+    """The form of every value: an array's number of axes, the forms of a tuple's parts, else its type.
+
+    Adds the cells that they are made of to those given. Runs at every call, so it is to be fast.
+    """
+    forms: list[Any] = []
+    for value in values:
+        form: Any = type(value)
+        if form is np.ndarray:
+            form = value.ndim
+            given.append(address_of(value))
+            given.extend(value.shape)
+        elif form is tuple:
+            form = _flatten(value, given)
+        elif issubclass(form, tuple):
+            given.extend(value)
+        else:
+            given.append(value)
+        forms.append(form)
+    return tuple(forms)
+
+
+def _kind(form: Any) -> Kind:
+    """Kind of a value of that form. A named tuple holds numbers, as annotated."""
+    match form:
+        case int():
+            return ArrayKind(form)
+        case tuple():
+            return TupleKind(tuple(map(_kind, form)))
+    if issubclass(form, tuple):
+        return TupleKind(tuple(map(_kind, form.__annotations__.values())), tuple(form.__annotations__))
     for known, kind in SCALAR_KINDS.items():
-        if isinstance(value, known):
+        if issubclass(form, known):
             return kind
-    raise TypeError(f"compiled code takes numbers, arrays and tuples of these, no {type(value).__name__}")
+    raise TypeError(f"compiled code takes numbers, arrays and tuples of these, not {form.__name__}")
 
 
 class _Code:

@@ -34,7 +34,7 @@ from statics.kernels.lowering import (
 )
 
 FLOAT, INT, BOOL = "double", "i64", "i1"
-SCALAR_KINDS = {float: FLOAT, int: INT, bool: BOOL}
+SCALAR_KINDS = {bool: BOOL, int: INT, float: FLOAT}
 """LLVM's types of numbers, by the annotations that name them."""
 NAMES = {FLOAT: "a float", INT: "an integer", BOOL: "a bool"}
 INTEGER_OPERATIONS = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
