@@ -276,7 +276,7 @@ def advance(
         factor, last_part = growth(part, last_part, order), part
         h = max(h, step) if reaches and factor > 1.0 else step * factor
         states[taken + 1, 2 * n * dofs], states[taken + 1, 2 * n * dofs + 1] = 0.0, 0.0
-        bad = clearance_of(passes, stages[0][count - 1], arm[1]) <= 0.0 or not finite(states[taken + 1])
+        bad = clearance_of(passes, arm[1], stages[0][count - 1]) <= 0.0 or not finite(states[taken + 1])
         if bad and taken > 0:
             return NO_ROOM, taken, step, rate, rejected, iterations
         taken += 1

@@ -95,12 +95,12 @@ def displacement(passes: MotionPasses, chain: np.ndarray, change: np.ndarray, sc
 @compiled
 def rate(
     passes: LinearizedPasses,
-    t: float,
-    y: np.ndarray,
     pieces: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     dofs: int,
+    t: float,
+    y: np.ndarray,
     y_rate: np.ndarray,
 ) -> None:
     """Set ``y_rate`` to dy/dt: the right-hand side for any integrator."""
@@ -119,12 +119,12 @@ def rate(
 @compiled
 def rate_jacobian(
     passes: LinearizedPasses,
-    t: float,
-    y: np.ndarray,
     pieces: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
     dofs: int,
+    t: float,
+    y: np.ndarray,
     jacobian: np.ndarray,
 ) -> None:
     """Set ``jacobian``, zero before, to d(rate)/dy, exact.
@@ -170,7 +170,7 @@ def rate_jacobian(
 
 
 @compiled
-def clearance_of(passes: MotionPasses, q: np.ndarray, segments: np.ndarray) -> float:
+def clearance_of(passes: MotionPasses, segments: np.ndarray, q: np.ndarray) -> float:
     """Smallest length or hole-to-hole length over L0; at zero the arm is at a geometric limit."""
     scalars = np.empty(SCALARS)
     run(passes.clearance, q.shape[0], scalars, q, segments)

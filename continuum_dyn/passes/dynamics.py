@@ -1,5 +1,6 @@
 """A scene's compiled equations of motion, under the names that an integrator asks for."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,6 +50,7 @@ class Dynamics:
         self.size = scene.arm.segments * self.dofs
         self.state_size = 2 * self.size + 2
         self.load = load
+        self._bound: tuple[Interval | None, Callable[..., None]] = None, lambda: None
 
     def state(self, coordinates: np.ndarray, rates: np.ndarray | None = None) -> np.ndarray:
         """State from coordinates and rates, shape (segments, dofs), at rest by default; ledger at zero."""
@@ -57,29 +59,35 @@ class Dynamics:
 
     def rate(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
         """dy/dt."""
-        kernel, *tables = self.linearized
+        if span is not self._bound[0]:
+            kernel, *tables = self.linearized
+            self._bound = span, accelerations.rate.bind(kernel.passes, span.pieces, *tables, self.dofs)
         y_rate = np.empty_like(y)
-        accelerations.rate(kernel.passes, t, y, span.pieces, *tables, self.dofs, y_rate)
+        self._bound[1](t, y, y_rate)
         return y_rate
 
     def jacobian(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
         """d(rate)/dy, exact."""
         kernel, *tables = self.linearized
         jacobian = np.zeros((y.size, y.size))
-        accelerations.rate_jacobian(kernel.passes, t, y, span.pieces, *tables, self.dofs, jacobian)
+        accelerations.rate_jacobian(kernel.passes, span.pieces, *tables, self.dofs, t, y, jacobian)
         return jacobian
 
     def clearance(self, y: np.ndarray) -> float:
         """Smallest length or hole-to-hole length over L0."""
+        return self._clearance(y[: self.size].reshape(-1, self.dofs))
+
+    @cached_property
+    def _clearance(self) -> Callable[[np.ndarray], float]:
         kernel, segments, _ = self.motion
-        return accelerations.clearance_of(kernel.passes, y[: self.size].reshape(-1, self.dofs), segments)
+        return accelerations.clearance_of.bind(kernel.passes, segments)
 
     def closest_disk(self, y: np.ndarray) -> int:
         """Number of the disk before which the arm is nearest to a geometric limit."""
         arm, (kernel, table, _) = self.scene.arm, self.motion
         q = y[: self.size].reshape(arm.disks, arm.subsegments, self.dofs)
         segments = table.reshape(*q.shape[:2], -1)
-        spans = zip(q, segments, strict=True)
+        spans = zip(segments, q, strict=True)
         return int(np.argmin([accelerations.clearance_of(kernel.passes, *span) for span in spans])) + 1
 
     @cached_property

@@ -320,7 +320,10 @@ def _piece_ends(rod: _Rod, loads: np.ndarray, angles: np.ndarray) -> np.ndarray:
         along, across = force_x - s * weight_x, force_y - s * weight_y
         stretch = 1 + rod.softness * (along * cosine + across * sine)
         unbending = stretch * (across * cosine - along * sine)
-        return np.stack([stretch * cosine, stretch * sine, rod.rest_bend + carried, -unbending]).ravel()
+        rates = np.empty((4, *moment.shape), state.dtype)
+        rates[0], rates[1] = stretch * cosine, stretch * sine
+        rates[2], rates[3] = rod.rest_bend + carried, -unbending
+        return rates.ravel()
 
     start = np.stack([0 * moment, 0 * moment, 0 * moment, moment]).ravel()
     solution = solve_ivp(slope, (0.0, 1.0), start, method="DOP853", rtol=1e-13, atol=1e-15)

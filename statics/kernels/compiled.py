@@ -10,7 +10,7 @@ import struct
 from collections.abc import Callable
 from functools import cache, update_wrapper
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -35,28 +35,37 @@ SHARED = (Path(__file__).parent, Path(__file__).parent.parent / "passes")
 """Folders of what compiled functions everywhere may call."""
 FORMATS = {FLOAT: "d", INT: "q", BOOL: "q", "ptr": "q"}
 
-AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
+Result = TypeVar("Result")
 
 
-def compiled(function: AnyFunction) -> AnyFunction:
-    """The function, compiled when it is first called with arguments of some kinds, and kept.
+class compiled(Generic[Result]):  # noqa: N801, a decorator
+    """A function that is compiled when it is first called with arguments of some kinds, and kept.
 
-    As plain Python it is its attribute ``python``.
+    It is called with numbers, contiguous arrays and tuples of these; ``python`` is the function itself.
     """
-    return update_wrapper(_Compiled(function), function)  # pyright: ignore[reportReturnType]
 
-
-class _Compiled:
-    """A function that is called with numbers, contiguous arrays, and tuples of these."""
-
-    def __init__(self, python: Callable[..., Any]) -> None:
+    def __init__(self, python: Callable[..., Result]) -> None:
         self.python = python
+        update_wrapper(self, python)
         self.codes: dict[tuple[Any, ...], _Code] = {}
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: Any) -> Result:
         """The result. Raises ``ValueError`` for arrays with strides, ``TypeError`` for other faults."""
         given: list[Any] = []
-        forms = _flatten(arguments, given)
+        return self._call(_flatten(arguments, given), given)
+
+    def bind(self, *first: Any) -> Callable[..., Result]:
+        """The function of the arguments that follow these: for many calls, which then cost less."""
+        first_given: list[Any] = []
+        first_forms = _flatten(first, first_given)
+
+        def call(*arguments: Any, kept_alive: tuple[Any, ...] = first) -> Any:
+            given = first_given.copy()
+            return self._call(first_forms + _flatten(arguments, given), given)
+
+        return call
+
+    def _call(self, forms: tuple[Any, ...], given: list[Any]) -> Any:
         code = self.codes.get(forms)
         if code is None:
             code = self.codes[forms] = _Code(self.python, self._kinds(forms))

@@ -30,7 +30,7 @@ _PRINTING = tuple(_HERE / f"{stem}.py" for stem in ("printing", "liveness", "loa
 _LOWERING = _HERE / "lowering.py"
 _SHARED = _HERE.parent / "derivation"
 
-_loaded: dict[Path, "Kernel"] = {}
+_loaded: dict[tuple[Structure, "Family"], "Kernel"] = {}
 
 
 @dataclass(frozen=True)
@@ -134,10 +134,10 @@ def load(structure: Structure, family: Family) -> Kernel:
 
     Raises ``KernelCacheError`` if the cache folder cannot be used safely.
     """
-    path = kernel_path(structure, family)
-    if path not in _loaded:
-        _loaded[path] = Kernel(_kept_text(structure, family, path), family, _compiled)
-    return _loaded[path]
+    if (structure, family) not in _loaded:
+        text = _kept_text(structure, family, kernel_path(structure, family))
+        _loaded[structure, family] = Kernel(text, family, _compiled)
+    return _loaded[structure, family]
 
 
 def load_interpreted(structure: Structure, family: Family) -> Kernel:
