@@ -50,9 +50,11 @@ def every_frame(strips: np.ndarray) -> dict[str, Any]:
 def corners(drawn: Drawn) -> np.ndarray:
     """Lower left and upper right corner of a drawing over all times, shape (2, 2)."""
     if isinstance(drawn, Lines):
-        return np.array([drawn.strips.min(axis=(0, 1)), drawn.strips.max(axis=(0, 1))])
-    ends = np.concatenate([drawn.place, drawn.place + drawn.vector])
-    return np.array([ends.min(axis=0), ends.max(axis=0)])
+        ends = drawn.strips.reshape(-1, 2)
+    else:
+        ends = np.concatenate([drawn.place, drawn.place + drawn.vector])
+    x_and_y = ends.T.copy()  # NumPy takes ten times as long for the least of what does not lie side by side
+    return np.array([x_and_y.min(axis=1), x_and_y.max(axis=1)])
 
 
 def moments(playback: Playback, rows: np.ndarray) -> Moments:

@@ -24,8 +24,9 @@ def picture(playback: Playback, measures: Measures) -> np.ndarray:
     segments = playback.columns["curvature"].shape[1]
     halfway = 0.5 * (playback.times[1:] + playback.times[:-1])
     rows = np.searchsorted(halfway, _time_at(playback, np.arange(WIDTH) + 0.5))
-    segment = (np.arange(HEIGHT)[::-1] * segments) // HEIGHT
-    return diverging(playback.columns["curvature"][np.ix_(rows, segment)].swapaxes(0, 1), measures.curvature)
+    shown, segment = np.unique((np.arange(HEIGHT)[::-1] * segments) // HEIGHT, return_inverse=True)
+    colors = diverging(playback.columns["curvature"][np.ix_(rows, shown)].T, measures.curvature)
+    return colors[segment]
 
 
 def axes(playback: Playback) -> dict[str, Drawn]:
