@@ -4,8 +4,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
-from scipy.sparse.linalg import LinearOperator, eigs
 
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
@@ -54,6 +52,8 @@ def fastest_frequency(dynamics: Dynamics, span: Interval, y: np.ndarray) -> floa
     if size <= MOST_DENSE:
         stiffness = linearized(dynamics, y, span)[size : 2 * size, :size]
         return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
+    from scipy.sparse.linalg import LinearOperator, eigs  # slow to load, and only large arms need it
+
     scale = SMALL * dynamics.scales()[:size]
 
     def accelerations(change: np.ndarray) -> np.ndarray:
@@ -246,6 +246,8 @@ def check(scene: Scene) -> None:
 
 def _overdamped(decay: np.ndarray, real: np.ndarray, shapes: np.ndarray) -> list[tuple[int, ...]]:
     """Pairs (slow, fast) of the real eigenvalues, by the likeness of their shapes."""
+    from scipy.optimize import linear_sum_assignment  # slow to load, and motions look at rates alone
+
     slow, fast = np.split(real[np.argsort(decay[real])], 2)
     unit = shapes / np.linalg.norm(shapes, axis=0)
     rows, columns = linear_sum_assignment(np.abs(unit[:, slow].T @ unit[:, fast]), maximize=True)

@@ -15,10 +15,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from statics.equilibria import Critical, Equilibrium, StaticSolver
-from statics.errors import InputError
 from statics.outcome import Outcome
 from statics.passes import newton, search
 from statics.scene import Scene
@@ -81,7 +79,7 @@ def follow_path(
     from ``start``, or from straight, and takes at most so many ``steps``. Raises ``InputError`` for tensions
     that do not fit, and for scenes without a potential.
     """
-    check_followable(scene)
+    scene.check_followable()
     solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
     return follow(solver, ramp, None if start is None else start.coordinates, range(steps))
 
@@ -96,26 +94,11 @@ def follow(
 
     Raises ``InputError`` for scenes without a potential.
     """
-    check_followable(solver.scene)
+    solver.scene.check_followable()
     first = solver.solve(ramp[0], start)
     if not first.found or len(ramp) == 1:
         return Path(first.outcome, [first] if first.found else [], [0.0], first)
     return ArcLength(solver, ramp).follow(first, steps)
-
-
-def hindrances(scene: Scene) -> list[str]:
-    """Effects that keep a scene's paths from being followed: stability is unknown, or depends on history."""
-    friction = ["friction"] if any(kind.rubs for kind in scene.cable_kinds) else []
-    return [*scene.without_potential, *friction]
-
-
-def check_followable(scene: Scene) -> None:
-    """Raises ``InputError`` for scenes whose paths cannot be followed by arc length."""
-    if hindrances(scene):
-        raise InputError(
-            f"a path by arc length needs a potential, which {' and '.join(hindrances(scene))} does not have. "
-            'Take path = "stable".'
-        )
 
 
 class _Place(NamedTuple):
@@ -248,6 +231,8 @@ class ArcLength:
         self, here: _Place, there: float, value: Callable[[_Place], float], within: float = LOCATED
     ) -> tuple[_Place, float] | None:
         """Where, up to ``there`` along the tangent, a value changes its sign, and how far; None if lost."""
+        from scipy.optimize import brentq  # every run loads this module, few follow a path, and SciPy is slow
+
         found: dict[float, _Place] = {0.0: here}
 
         def value_at(length: float) -> float:

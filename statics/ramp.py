@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from statics.arc_length import ArcLength, Path, hindrances
+from statics.arc_length import ArcLength, Path
 from statics.equilibria import Critical, Equilibrium, Slip, StaticSolver
 from statics.outcome import Outcome
 from statics.scene import Scene
@@ -40,7 +40,7 @@ def ramp(
     """An equilibrium for each set of inputs, each from the last one that was found."""
     found: list[Equilibrium] = []
     before: Equilibrium | Slip = Slip.DRAWN_IN
-    can_be_followed = not hindrances(solver.scene)
+    can_be_followed = not solver.scene.path_hindrances
     for inputs in points:
         point = solver.solve(inputs, start, before)
         if point.found and can_be_followed and isinstance(before, Equilibrium):
@@ -78,7 +78,7 @@ def limit_on_the_way(
 
 
 def _way(solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None) -> Path | None:
-    if hindrances(solver.scene):
+    if solver.scene.path_hindrances:
         return None
     if start is None:
         drives = solver.scene.cables + solver.scene.driven_loads

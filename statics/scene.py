@@ -136,6 +136,20 @@ class Scene:
         return ("follower loads",) if follows else ()
 
     @property
+    def path_hindrances(self) -> tuple[str, ...]:
+        """Effects that keep paths from being followed: stability is unknown, or depends on history."""
+        friction = ("friction",) if any(kind.rubs for kind in self.cable_kinds) else ()
+        return (*self.without_potential, *friction)
+
+    def check_followable(self) -> None:
+        """Raise ``InputError`` if paths of equilibria cannot be followed by arc length."""
+        if self.path_hindrances:
+            raise InputError(
+                f"a path by arc length needs a potential, which {' and '.join(self.path_hindrances)} does "
+                'not have. Take path = "stable".'
+            )
+
+    @property
     def inputs(self) -> tuple[str, ...]:
         """Names of the numbers that drive the scene.
 

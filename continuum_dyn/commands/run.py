@@ -192,12 +192,13 @@ def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_t
 def _progress(title: str, quiet: bool) -> Iterator[Any]:
     """A progress bar on a terminal; while kernels are compiled it only pulses, and says why."""
     from rich.console import Console
-    from rich.progress import Progress
 
     console = Console(stderr=True)
     if quiet or not (console.is_terminal and shows_progress()):
         yield None
         return
+    from rich.progress import Progress
+
     latest = time.monotonic()
     with Progress(console=console, transient=True) as bar:
         task = bar.add_task(f"{title}: loading its kernels, or compiling new ones", total=None)

@@ -13,11 +13,11 @@ import numpy as np
 from continuum_dyn.record.datasets import TEXT, whole_file, write_columns
 from continuum_dyn.record.log_format import FORMAT, FORMAT_VERSION, GROUPS
 from continuum_dyn.scenario.scenario import Scenario
-from statics.equilibria import Equilibrium
 
 if TYPE_CHECKING:
     from continuum_dyn.simulation import Run
     from continuum_dyn.simulation.trajectory import Trajectory
+    from statics.equilibria import Equilibrium
 
 
 def write_log(run: "Run", path: Path) -> None:
@@ -124,7 +124,7 @@ def write_equilibria(file: h5py.File, run: "Run") -> None:
     write_columns(file.create_group("equilibria"), scales, columns, GROUPS["equilibria"])
 
 
-def _stack(points: Sequence[Equilibrium], name: str) -> np.ndarray | None:
+def _stack(points: Sequence["Equilibrium"], name: str) -> np.ndarray | None:
     """The values of all points; None if one of them has none."""
     values = [getattr(point, name) for point in points]
     return None if any(value is None for value in values) else np.array(values)

@@ -8,7 +8,6 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from continuum_dyn.scenario.profiles import Constant
-from statics.arc_length import check_followable
 from statics.arm import MAX_SEGMENTS, Arm
 from statics.errors import InputError
 from statics.support.checked import STRICT, Positive
@@ -88,7 +87,7 @@ class RampStudy(StudyKind):
     def check(self, scenario: "Scenario") -> None:
         """Raise ``InputError`` if the lists differ in length, or the scene has no path to follow."""
         if self.follows_path:
-            check_followable(scenario.scene)
+            scenario.scene.check_followable()
         if len({len(values) for values in scenario.ramps}) > 1:
             counts = ", ".join(str(len(values)) for values in scenario.ramps)
             raise InputError(

@@ -8,10 +8,9 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.integrate import OdeSolver
 
 from continuum_dyn.integrators import METHODS, Budget, Monitor, check
 from continuum_dyn.integrators.methods import drive_frequency
@@ -22,6 +21,9 @@ from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
 from statics.outcome import Outcome
+
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolver
 
 BRIEF = 1e-12
 """Duration of the motion that only loads kernels, s."""
@@ -175,7 +177,7 @@ def _solve(
     at: np.ndarray,
     monitor: Monitor,
     gathered: Samples,
-) -> OdeSolver:
+) -> "OdeSolver":
     """Step from the monitor's state to the end of the intervals, gather states at the times ``at``.
 
     The last step before the monitor ends the run is sampled like any other, unless its end is not acceptable.

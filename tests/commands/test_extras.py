@@ -20,7 +20,8 @@ STEP = str(SCENARIOS / "step_response.toml")
 
 def remove(package: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Make it as if a package were not installed, and the views not imported yet."""
-    for name in [package, *(name for name in sys.modules if name.startswith(f"{package}."))]:
+    packages = (package, f"{package}_bindings")  # rerun's compiled core has a name of its own
+    for name in [*packages, *(name for name in sys.modules if name.startswith(f"{package}."))]:
         monkeypatch.setitem(sys.modules, name, None)
     for name in [name for name in sys.modules if name.startswith("continuum_dyn.views.")]:
         monkeypatch.delitem(sys.modules, name)

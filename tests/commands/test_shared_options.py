@@ -108,6 +108,23 @@ def test_help_and_completion_load_no_solver() -> None:
     assert not loaded & {"numpy", "scipy", "sympy", "llvmlite", "h5py", "pydantic", "matplotlib", "rerun"}
 
 
+def test_a_run_loads_no_library_that_it_can_do_without(tmp_path: Path) -> None:
+    """They would take longer to load than the motion takes to compute."""
+    step = str(SCENARIOS / "step_response.toml")
+    program = (
+        "import atexit, sys\n"
+        "from continuum_dyn.cli import main\n"
+        "atexit.register(lambda: print(*sys.modules))\n"
+        f"sys.argv[1:] = ['run', '--quiet', {step!r}, '--out', {str(tmp_path)!r}]\n"
+        "main()\n"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded = set(result.stdout.split())
+    assert {"h5py", "rerun_bindings"} <= loaded
+    assert not loaded & {"jsonschema", "matplotlib", "pandas", "rerun", "rich.progress", "sympy", "xarray"}
+    assert not loaded & {"scipy.interpolate", "scipy.signal"}
+
+
 def completed(*words: str) -> list[str]:
     """What bash is offered for the last of these words."""
     program = "import sys; sys.argv[0] = 'continuum-dyn'; from continuum_dyn.cli import main; main()"

@@ -19,7 +19,7 @@ def naming_extras() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        package = (error.name or "").partition(".")[0]
+        package = (error.name or "").partition(".")[0].removesuffix("_bindings")  # rerun's compiled core
         if package not in EXTRAS:
             raise
         extra = EXTRAS[package]

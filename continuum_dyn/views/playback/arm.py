@@ -1,7 +1,7 @@
 """The arm as it is drawn: core, disks, cables, loads, the path of its tip, and its equilibrium."""
 
 import numpy as np
-import rerun as rr
+from rerun_bindings import escape_entity_path_part
 
 from continuum_dyn.views.figures.backbone import backbone, poses
 from continuum_dyn.views.playback.colors import (
@@ -127,7 +127,7 @@ def _cables(
         holes = (centre + offset[:, None] * across)[:, : anchor + 1]
         tension = playback.columns["tension"][rows, number]
         taut, drawn = tension > 0.0, own_color(playback, int(color))
-        entity = f"cables/{rr.escape_entity_path_part(name)}"
+        entity = f"cables/{escape_entity_path_part(name)}"
         least, most = TAUT_WIDTH
         width = least + (most - least) * tension[taut] / measures.tension
         parts[entity] = Lines(holes[taut], drawn, width, 30.0, taut.astype(int))

@@ -1,12 +1,12 @@
 """Curvature over segment and time as a picture in the colours of the arm, with its axes."""
 
 import numpy as np
-import rerun as rr
 
 from continuum_dyn.views.playback.colors import BLACK, GREY, diverging
 from continuum_dyn.views.playback.drawing import Drawn, Lines, every_frame
 from continuum_dyn.views.playback.measures import Measures
 from continuum_dyn.views.playback.playback import Playback
+from continuum_dyn.views.playback.stream import Stream
 
 WIDTH, HEIGHT = 900, 300
 """Width and height of the picture, pixels."""
@@ -15,6 +15,8 @@ BOTTOM, TOP = -float(HEIGHT), 0.0
 SHOWN = ((-110.0, WIDTH + 50.0), (BOTTOM - 60.0, TOP + 20.0))
 """Ranges of the view: from left to right, from bottom to top."""
 MOST_TICKS = 5
+RED_GREEN_BLUE, BYTES = 2, 6
+"""Of a pixel, as rerun numbers what may be."""
 
 
 def picture(playback: Playback, measures: Measures) -> np.ndarray:
@@ -22,8 +24,9 @@ def picture(playback: Playback, measures: Measures) -> np.ndarray:
     segments = playback.columns["curvature"].shape[1]
     halfway = 0.5 * (playback.times[1:] + playback.times[:-1])
     rows = np.searchsorted(halfway, _time_at(playback, np.arange(WIDTH) + 0.5))
-    segment = (np.arange(HEIGHT)[::-1] * segments) // HEIGHT
-    return diverging(playback.columns["curvature"][np.ix_(rows, segment)].swapaxes(0, 1), measures.curvature)
+    shown, segment = np.unique((np.arange(HEIGHT)[::-1] * segments) // HEIGHT, return_inverse=True)
+    colors = diverging(playback.columns["curvature"][np.ix_(rows, shown)].T, measures.curvature)
+    return colors[segment]
 
 
 def axes(playback: Playback) -> dict[str, Drawn]:
@@ -62,9 +65,12 @@ def cursor(playback: Playback, rows: np.ndarray) -> Lines:
     return Lines(**every_frame(strips[:, None]), color=BLACK, width=1.5, order=5.0)
 
 
-def send_picture(recording: rr.RecordingStream, entity: str, pixels: np.ndarray) -> None:
+def send_picture(recording: Stream, entity: str, pixels: np.ndarray) -> None:
     """Put the picture behind its axes."""
-    recording.log(entity, rr.Image(pixels, draw_order=1.0), static=True)
+    height, width, _ = pixels.shape
+    form = {"width": [width], "height": [height], "pixel_format": None}
+    form |= {"color_model": [RED_GREEN_BLUE], "channel_datatype": [BYTES]}
+    recording.log(entity, "archetypes.Image", buffer=pixels.reshape(1, -1), format=form, draw_order=[1.0])
 
 
 def _time_at(playback: Playback, x: np.ndarray) -> np.ndarray:

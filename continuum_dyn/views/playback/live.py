@@ -23,6 +23,7 @@ from continuum_dyn.views.playback.measures import measures_of
 from continuum_dyn.views.playback.playback import MOST_FRAMES, Playback, playback_of
 from continuum_dyn.views.playback.plots import plots_of
 from continuum_dyn.views.playback.recording import APPLICATION, send_beside, send_playback, send_rows
+from continuum_dyn.views.playback.stream import Stream
 from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, free_ports
 from statics.errors import LogError
 
@@ -38,8 +39,7 @@ class Follower:
     """Sends a log's new rows to a recording, and all of them again once it is complete."""
 
     def __init__(self, recording: rr.RecordingStream) -> None:
-        rr.set_strict_mode(True)
-        self.recording = recording
+        self.recording = Stream(recording.to_native())
         self.rows = 0
         self.complete = False
 
@@ -62,7 +62,7 @@ class Follower:
         drawn |= send_beside(self.recording, [playback], measures, drawn)
         if self.rows == 0:
             plots = {name: [plot] for name, plot in plots_of(playback).items()}
-            self.recording.send_blueprint(blueprint([playback], drawn, plots, growing=True))
+            blueprint([playback], drawn, plots, growing=True).send(self.recording)
         self.rows = len(playback.times)
 
 

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import rerun as rr
 
 from continuum_dyn.views.playback.colors import GREY, PALETTE, distinct_colors, shades
-from continuum_dyn.views.playback.drawing import time_column
+from continuum_dyn.views.playback.drawing import moments
 from continuum_dyn.views.playback.playback import Playback, spread
+from continuum_dyn.views.playback.stream import Stream
 from continuum_dyn.views.playback.targets import resting_rows
 from statics.quantities import QUANTITIES
 
@@ -17,6 +17,8 @@ STORED = ("kinetic_energy", "elastic_energy", "gravity_energy")
 LEDGER = ("input_work", "dissipated_energy")
 POWERS = ("input_power", "dissipated_power")
 LINE_WIDTH, THIN = 1.5, 0.8
+MIN_AND_MAX = 5
+"""How rerun draws what is finer than a pixel: the mean of fast oscillations would look like rest."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,7 @@ def value_range(plots: Sequence[Plot]) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def send_style(recording: rr.RecordingStream, entity: str, playback: Playback, plot: Plot) -> None:
+def send_style(recording: Stream, entity: str, playback: Playback, plot: Plot) -> None:
     """Names, colours and widths of the series."""
     count = len(plot.series)
     bounds = np.array([series.is_bound for series in plot.series])
@@ -124,20 +126,14 @@ def send_style(recording: rr.RecordingStream, entity: str, playback: Playback, p
         "names": [prefix + series.name for series in plot.series],
         "colors": np.where(bounds, np.uint32(GREY), colors),
     }
-    lines = rr.SeriesLines(
-        **style,
-        widths=np.where(bounds, THIN, LINE_WIDTH),
-        aggregation_policy="MinMax",  # the mean of fast oscillations would look like rest
-    )
-    recording.log(entity, lines, static=True)
+    look = {"widths": np.where(bounds, THIN, LINE_WIDTH), "aggregation_policy": [MIN_AND_MAX]}
+    recording.log(entity, "archetypes.SeriesLines", **style, **look)
     if not playback.moves:
-        recording.log(entity, rr.SeriesPoints(**style, marker_sizes=[3.0] * count), static=True)
+        recording.log(entity, "archetypes.SeriesPoints", **style, marker_sizes=[3.0] * count)
 
 
-def send_values(
-    recording: rr.RecordingStream, entity: str, playback: Playback, plot: Plot, rows: np.ndarray
-) -> None:
+def send_values(recording: Stream, entity: str, playback: Playback, plot: Plot, rows: np.ndarray) -> None:
     """The series at those rows."""
     values = np.column_stack([series.values[rows] for series in plot.series])
-    columns = rr.Scalars.columns(scalars=values.ravel()).partition(np.full(len(rows), len(plot.series)))
-    recording.send_columns(entity, [time_column(playback, rows)], columns)
+    counts = np.full(len(rows), len(plot.series))
+    recording.send(entity, moments(playback, rows), "archetypes.Scalars", counts, scalars=values.ravel())

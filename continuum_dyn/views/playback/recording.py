@@ -6,19 +6,21 @@ Positions become float32 and long motions are thinned out, so the log stays the 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
-import rerun as rr
+import rerun_bindings as core
 
 from continuum_dyn.record import Log
 from continuum_dyn.views.playback import heat_map, plots
 from continuum_dyn.views.playback.about import about, ending
 from continuum_dyn.views.playback.arm import moving_parts, still_parts
 from continuum_dyn.views.playback.blueprint import blueprint, words_alone
-from continuum_dyn.views.playback.drawing import Drawn, send, time_column
+from continuum_dyn.views.playback.drawing import Drawn, moments, send
 from continuum_dyn.views.playback.legend import legend
 from continuum_dyn.views.playback.measures import Measures, measures_of
 from continuum_dyn.views.playback.playback import Playback, names_of, playback_of
+from continuum_dyn.views.playback.stream import Stream, content
 from statics.errors import InputError, LogError
 from statics.support.interruption import held
 
@@ -31,11 +33,11 @@ def save(logs: Sequence[Log], path: Path) -> None:
     The recording of a log without any pose says how the run ended. Raises ``LogError`` if the file cannot
     be written, and then nothing is left behind; ``InputError`` for logs that cannot be shown together.
     """
-    content = record_logs(logs)
+    recorded = record_logs(logs)
     part = path.with_name(path.name + ".part")
     with held():
         try:
-            part.write_bytes(content)
+            part.write_bytes(recorded)
             part.replace(path)
         except OSError as error:
             raise LogError(f"cannot write the recording {path}: {error.strerror or error}.") from error
@@ -46,10 +48,9 @@ def save(logs: Sequence[Log], path: Path) -> None:
 
 def record_logs(logs: Sequence[Log]) -> bytes:
     """The recording's content. Raises ``InputError`` for logs that cannot be shown together."""
-    rr.set_strict_mode(True)  # otherwise bad data only warns, and leaves an empty column
-    recording = rr.RecordingStream(APPLICATION)
-    memory = recording.memory_recording()  # its file sink waits for ever on a full disk (0.41)
-    recording.send_recording_name(" and ".join(log.title or log.path.stem for log in logs))
+    recording = Stream(core.new_recording(APPLICATION, uuid4().hex, False, False))
+    memory = content(recording)  # its file sink waits for ever on a full disk (0.41)
+    core.send_recording_name(" and ".join(log.title or log.path.stem for log in logs), recording.native)
     told = [
         playback_of(log, name, rank)
         for rank, (log, name) in enumerate(zip(logs, names_of(logs), strict=True))
@@ -60,8 +61,8 @@ def record_logs(logs: Sequence[Log]) -> bytes:
         _send_playbacks(recording, playbacks)
     else:
         words = "\n\n".join(ending(log) for log, playback in zip(logs, told, strict=True) if playback is None)
-        recording.log("outcome", rr.TextDocument(words), static=True)
-        recording.send_blueprint(words_alone("outcome"))
+        recording.log("outcome", "archetypes.TextDocument", text=[words])
+        words_alone("outcome").send(recording)
     return memory.drain_as_bytes()
 
 
@@ -75,12 +76,12 @@ def _check_alike(playbacks: Sequence[Playback]) -> None:
             )
 
 
-def send_playback(recording: rr.RecordingStream, playback: Playback) -> None:
+def send_playback(recording: Stream, playback: Playback) -> None:
     """Send the playback of one run, with its layout."""
     _send_playbacks(recording, [playback])
 
 
-def _send_playbacks(recording: rr.RecordingStream, playbacks: Sequence[Playback]) -> None:
+def _send_playbacks(recording: Stream, playbacks: Sequence[Playback]) -> None:
     measures = measures_of(playbacks)
     drawn, plotted = {}, {}
     for playback in playbacks:
@@ -89,11 +90,11 @@ def _send_playbacks(recording: rr.RecordingStream, playbacks: Sequence[Playback]
             plotted.setdefault(name, []).append(plot)
     drawn |= send_beside(recording, playbacks, measures, drawn)
     # It becomes the active layout: bounds and ranges of the logs before would not fit these.
-    recording.send_blueprint(blueprint(playbacks, drawn, plotted))
+    blueprint(playbacks, drawn, plotted).send(recording)
 
 
 def send_rows(
-    recording: rr.RecordingStream,
+    recording: Stream,
     playback: Playback,
     measures: Measures,
     frames: np.ndarray,
@@ -104,7 +105,7 @@ def send_rows(
     for entity, part in (
         moving | {playback.at("curvature", "now"): heat_map.cursor(playback, frames)}
     ).items():
-        send(recording, entity, part, time_column(playback, frames))
+        send(recording, entity, part, moments(playback, frames))
     for name, plot in plots.plots_of(playback).items():
         entity = "/".join(filter(None, ("series", name, playback.name)))
         plots.send_style(recording, entity, playback, plot)
@@ -113,7 +114,7 @@ def send_rows(
 
 
 def send_beside(
-    recording: rr.RecordingStream,
+    recording: Stream,
     playbacks: Sequence[Playback],
     measures: Measures,
     drawn: Mapping[str, Drawn],
@@ -126,8 +127,8 @@ def send_beside(
         heat_map.send_picture(recording, playback.at("curvature", "picture"), picture)
         for name, part in heat_map.axes(playback).items():
             send(recording, playback.at("curvature", name), part)
-        words = rr.TextDocument(about(playback), media_type="text/markdown")
-        recording.log(playback.at("about"), words, static=True)
+        words, kind = [about(playback)], ["text/markdown"]
+        recording.log(playback.at("about"), "archetypes.TextDocument", text=words, media_type=kind)
     still |= legend({**drawn, **still}, playbacks, measures)
     for entity, part in still.items():
         send(recording, entity, part)
