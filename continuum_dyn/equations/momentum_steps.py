@@ -27,7 +27,7 @@ from statics.derivation.frames import AXES, MOMENTUM, POSE, linear, perpendicula
 from statics.derivation.outward import sum_along
 from statics.derivation.reach import Reach, core_reaches, reach_of
 from statics.derivation.step import INWARD, OUTWARD, Step, carry_from_zero
-from statics.derivation.trace import Trace, column_by_name, symbol, symbol_column, symbol_matrix
+from statics.derivation.trace import Trace, column_by_name, jacobian, symbol, symbol_column, symbol_matrix
 from statics.derivation.virtual_work import Forces, SceneForces, Symbols
 
 
@@ -45,12 +45,12 @@ def conservative(forces: SceneForces) -> SceneForces:
 def _conservative(part: Forces, site: Symbols) -> Forces:
     force = part.force.subs(dict.fromkeys([*site.rates, *site.accelerations], 0))
     none = sp.zeros(*part.damping.shape)
-    return replace(part, force=force, damping=none, stiffness=-force.jacobian(site.coordinates))
+    return replace(part, force=force, damping=none, stiffness=-jacobian(force, site.coordinates))
 
 
 def _momentum(part: Forces, site: Symbols) -> sp.Matrix:
     """Momentum dT/du of one segment, disk or point of the core by itself, shape (coordinates, 1)."""
-    return sp.Matrix([part.energies["kinetic_energy"].diff(rate) for rate in site.rates])
+    return jacobian(sp.Matrix([part.energies["kinetic_energy"]]), site.rates).T
 
 
 def _name_partial_rates(trace: Trace, forces: SceneForces, reach: Reach) -> None:

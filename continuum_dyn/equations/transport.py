@@ -2,7 +2,7 @@
 
 With V = v_b + omega_b z x (p - p_b), the velocity that a mass at p would have if it were fixed to the base
 (its velocity of transport), the base does on the arm the work of all loads on the masses along V, inertia's
-included, with its sign turned:
+included, with its sign changed:
 
     power = sum (m a - F) . V = d/dt (sum m v . V) - sum (m v . A + F . V)
     A = a_b + alpha_b z x (p - p_b) - omega_b z x v_b
@@ -21,6 +21,7 @@ from typing import Any
 import sympy as sp
 
 from statics.derivation.frames import ACCELERATION, POSE, TWIST, components, perpendicular, split
+from statics.derivation.trace import derivative
 from statics.derivation.virtual_work import Forces
 
 
@@ -36,7 +37,7 @@ def with_transport(part: Forces, loads: sp.Matrix, site: Any) -> Forces:
     velocity = sp.Matrix(base_velocity) + omega * perpendicular(away)
     push = sp.Matrix(base_acceleration) + alpha * perpendicular(away)
     push -= omega * perpendicular(sp.Matrix(base_velocity))
-    momentum = [part.energies["kinetic_energy"].diff(rate) for rate in site.rates]
+    momentum = [derivative(part.energies["kinetic_energy"], rate) for rate in site.rates]
 
     def along(values: Iterable[Any], linear: sp.Matrix, angular: Any) -> Any:
         """Scalar product with a twist; the values of a point of the core have no angular one."""

@@ -14,6 +14,7 @@ import sympy as sp
 
 from continuum_dyn.equations.transport import with_transport
 from statics.derivation.segment import SegmentSymbols, SpanSymbols
+from statics.derivation.trace import derivative, jacobian
 from statics.derivation.virtual_work import (
     Forces,
     Groups,
@@ -32,7 +33,7 @@ def velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequenc
     """Time derivative of a scalar or vector displacement by the chain rule, with its shape."""
     if isinstance(displacement, Sequence):
         return tuple(velocity(component, coordinates, rates) for component in displacement)
-    return sum(sp.diff(displacement, q) * u for q, u in zip(coordinates, rates, strict=True))
+    return sum(derivative(displacement, q) * u for q, u in zip(coordinates, rates, strict=True))
 
 
 def partial_velocity(
@@ -41,8 +42,8 @@ def partial_velocity(
     """dr'/du_i of a scalar or vector displacement, with its shape. Kane and Levinson 1985."""
     moving = velocity(displacement, coordinates, rates)
     if isinstance(moving, Sequence):
-        return tuple(sp.diff(component, rates[i]) for component in moving)
-    return sp.diff(moving, rates[i])
+        return tuple(derivative(component, rates[i]) for component in moving)
+    return derivative(moving, rates[i])
 
 
 @cache
@@ -55,7 +56,7 @@ def _in_motion(groups: Groups, site: Symbols) -> Forces:
     force = _total(groups, site)
     loads = _loads(groups, site)
     still = loads.subs(dict.fromkeys(site.rates, 0))
-    mass, damping = -force.jacobian(site.accelerations), -loads.jacobian(site.rates)
+    mass, damping = -jacobian(force, site.accelerations), -jacobian(loads, site.rates)
     energies = by_account(
         [group for group in groups if group[0].account in ("elastic_energy", "gravity_energy")],
         lambda pair: potential(pair, site.coordinates),
@@ -67,7 +68,7 @@ def _in_motion(groups: Groups, site: Symbols) -> Forces:
     )
     if "dissipated_power" in powers:
         powers["dissipated_power"] *= -1
-    return Forces(force, mass, damping, -still.jacobian(site.coordinates), energies, powers)
+    return Forces(force, mass, damping, -jacobian(still, site.coordinates), energies, powers)
 
 
 def _on_moving_base(groups: Groups, site: Symbols) -> Forces:

@@ -11,7 +11,7 @@ import sympy as sp
 from statics.derivation.forces_by_name import Known
 from statics.derivation.outward import name_poses
 from statics.derivation.step import INWARD, OUTWARD, Carried, Step
-from statics.derivation.trace import Trace, symbol
+from statics.derivation.trace import Trace, derivative, symbol
 from statics.derivation.virtual_work import SceneForces
 
 NameGeometry = Callable[[Trace, SceneForces], tuple[Carried, Known]]
@@ -35,7 +35,7 @@ def lengths_step(
         trace.always_name(f"hole_to_hole_{c}", (cable.passes * cable.length).xreplace(known))
         if moves:
             pairs = zip(ends.coordinates, ends.rates, strict=True)
-            rate = sum(cable.length.diff(q) * u for q, u in pairs)
+            rate = sum(derivative(cable.length, q) * u for q, u in pairs)
             trace.always_name(f"hole_to_hole_rate_{c}", (cable.passes * rate).xreplace(known))
     return Step(
         "lengths",

@@ -42,9 +42,9 @@ def pass_hole(
 ) -> tuple[sp.Matrix, sp.Matrix]:
     """Replace the tension beyond a hole, at row ``state`` of V and load, by the tension before it."""
     c, start = cable.number, symbol("starts_span") if in_span else sp.Integer(1)
-    place, *of_friction = (symbol(f"{name}_there" if in_span else name) for name in _slope_names(cable))
-    factor, rate = of_friction or (sp.Integer(1), sp.Integer(0))
-    kappa = trace.name(f"kappa_{c}", start * (weights.stiffness * place + weights.damping * rate))
+    by_length, *of_friction = (symbol(f"{name}_there" if in_span else name) for name in _slope_names(cable))
+    factor, by_rate = of_friction or (sp.Integer(1), sp.Integer(0))
+    kappa = trace.name(f"kappa_{c}", start * (weights.stiffness * by_length + weights.damping * by_rate))
     factor = trace.name(f"tension_factor_{c}", start * factor + 1 - start)
     m = 1 / trace.name(f"hole_pivot_{c}", 1 - kappa * V[state, state])
     onto = sp.eye(V.shape[0])

@@ -5,7 +5,7 @@ from typing import Any
 import sympy as sp
 
 from statics.derivation.segment import CableSymbols
-from statics.derivation.trace import Trace, column_by_name
+from statics.derivation.trace import Trace, column_by_name, derivative
 from statics.derivation.virtual_work import SceneForces
 
 Known = dict[Any, Any]
@@ -35,7 +35,7 @@ def name_forces(trace: Trace, forces: SceneForces, known: Known) -> None:
 def _cable_pull(forces: SceneForces, cable: CableSymbols) -> sp.Matrix:
     """Derivative of a cable's length, where it passes, by the span's coordinates, shape (coordinates, 1)."""
     coordinates = (forces.span or forces.segment).coordinates
-    return sp.Matrix([cable.passes * cable.length.diff(q) for q in coordinates])
+    return sp.Matrix([cable.passes * derivative(cable.length, q) for q in coordinates])
 
 
 def force_by_name(forces: SceneForces, site: str) -> sp.Matrix:

@@ -134,13 +134,13 @@ def _clearance(trace: Trace, forces: SceneForces, known: Known) -> tuple[float, 
     span, rest = forces.span or forces.segment, symbol("rest_length")
     spacing = rest if forces.span is None else symbol("disk_spacing")
     ratios = [
-        sp.Max(rewrite(cable.gap, known) / spacing, 1 - symbol(f"cable_passes_{number}"))
+        sp.Max(rewrite(cable.gap, known) / spacing, 1 - symbol(f"cable_passes_{number}"), evaluate=False)
         for number, cable in enumerate(span.cables, start=1)
     ]
     if forces.segment.elongation != 0:
         ratios.append(forces.segment.length / rest)
     names = [trace.name(f"ratio_{k}", ratio) for k, ratio in enumerate(ratios)]
-    return 1.0, sp.Min(symbol("clearance"), *names)
+    return 1.0, sp.Min(symbol("clearance"), *names, evaluate=False)
 
 
 def clearance_step(forces: SceneForces) -> Step:

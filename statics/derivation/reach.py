@@ -13,7 +13,7 @@ import sympy as sp
 from statics.derivation.frames import NEAR_ROTATION, linear, perpendicular, rotate, transition
 from statics.derivation.segment import CorePointSymbols
 from statics.derivation.sigma import Sigma
-from statics.derivation.trace import Trace, symbol_column
+from statics.derivation.trace import Trace, derivative, jacobian, symbol_column
 from statics.derivation.virtual_work import SceneForces
 
 
@@ -86,7 +86,7 @@ def _along_chord(length: Any, half: Any, coordinates: tuple[sp.Symbol, ...]) -> 
     """A reach in axes along its chord, which stands at half the end's angle; derivatives by q and by q, q."""
 
     def by(vector: sp.Matrix, q: sp.Symbol) -> sp.Matrix:
-        return vector.diff(q) + half.diff(q) * perpendicular(vector)
+        return jacobian(vector, [q]) + derivative(half, q) * perpendicular(vector)
 
     whole = sp.Matrix([length * Sigma(0, half), 0])
     by_q = [by(whole, q) for q in coordinates]

@@ -20,6 +20,7 @@ from statics.derivation.segment import (
     SegmentSymbols,
     SpanSymbols,
 )
+from statics.derivation.trace import derivative, jacobian
 from statics.effects import Effect, Pair
 from statics.errors import InputError
 from statics.structure import Structure
@@ -109,8 +110,8 @@ def generalized_force(
 def partial_displacement(displacement: Any, coordinate: sp.Symbol) -> Any:
     """dr/dq of a scalar or vector displacement, with its shape. Rone 2012, Eq. 3."""
     if isinstance(displacement, Sequence):
-        return tuple(sp.diff(component, coordinate) for component in displacement)
-    return sp.diff(displacement, coordinate)
+        return tuple(derivative(component, coordinate) for component in displacement)
+    return derivative(displacement, coordinate)
 
 
 _OWN = sp.Dummy("r", real=True)
@@ -215,7 +216,7 @@ def _at_rest(groups: Groups, site: Symbols) -> Forces:
     none = sp.zeros(len(coordinates))
     with_potential = [group for group in groups if have_potentials([group], coordinates)]
     energies = by_account(with_potential, lambda pair: potential(pair, coordinates))
-    return Forces(force, none, none, -force.jacobian(coordinates), energies)
+    return Forces(force, none, none, -jacobian(force, coordinates), energies)
 
 
 def by_account(groups: Groups, amount: Callable[[Pair], Any]) -> dict[str, Any]:
