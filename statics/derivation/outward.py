@@ -107,8 +107,7 @@ def _name_cable_lengths(trace: Trace, cables: list[CableSymbols], known: Known) 
     """Lengths that are square roots, with the powers of them that forces contain."""
     powers: Known = {}
     for number, cable in enumerate(cables, start=1):
-        squared = cable.length**2
-        if cable.length == sp.sqrt(squared) and cable.length.is_Pow:
+        if cable.length.is_Pow and cable.length == sp.sqrt(squared := cable.length**2):
             value = trace.name(f"squared_{number}", squared.xreplace(known))
             length = trace.name(f"cable_length_{number}", sp.sqrt(value))
             powers |= {squared ** sp.Rational(power, 2): length**power for power in (1, -1, -3)}
