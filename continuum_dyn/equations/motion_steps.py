@@ -35,8 +35,8 @@ ENERGIES = ("kinetic_energy", "elastic_energy", "gravity_energy")
 POWERS = ("input_power", "dissipated_power")
 
 
-def _end_velocity(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Matrix:
-    """Velocity of a reach's end, shape (2, 1), m/s."""
+def _name_end_velocity(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Matrix:
+    """Name the velocity of a reach's end, shape (2, 1), m/s."""
     near, omega = split(components("near", TWIST))
     relative = reach.position_partials * sp.Matrix(forces.segment.rates)
     relative = trace.name(f"{reach.prefix}relative_velocity", relative)
@@ -45,15 +45,15 @@ def _end_velocity(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Matrix:
 
 
 def _name_far_velocity(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[Carried, Known]:
-    """Velocity of the far disk."""
+    """Name the velocity of the far disk."""
     _, omega = split(components("near", TWIST))
-    linear = _end_velocity(trace, forces, reach)
+    linear = _name_end_velocity(trace, forces, reach)
     far = [*linear, trace.name("far_angular_velocity", omega + forces.segment.bend_angle_rate)]
     return carry_from_base(forces, TWIST, far), dict(zip(forces.disk.rates, far, strict=True))
 
 
-def _end_acceleration(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Matrix:
-    """Acceleration of a reach's end, shape (2, 1), m/s^2."""
+def _name_end_acceleration(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Matrix:
+    """Name the acceleration of a reach's end, shape (2, 1), m/s^2."""
     (near, alpha), (_, omega) = split(components("near", ACCELERATION)), split(components("near", TWIST))
     u, w = forces.segment.rates, sp.Matrix(forces.segment.accelerations)
     relative = symbol_column(f"{reach.prefix}relative_velocity", len(AXES))
@@ -66,15 +66,15 @@ def _end_acceleration(trace: Trace, forces: SceneForces, reach: Reach) -> sp.Mat
 
 
 def _name_far_acceleration(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[Carried, Known]:
-    """Acceleration of the far disk."""
+    """Name the acceleration of the far disk."""
     _, alpha = split(components("near", ACCELERATION))
-    linear = _end_acceleration(trace, forces, reach)
+    linear = _name_end_acceleration(trace, forces, reach)
     far = [*linear, trace.name("far_angular_acceleration", alpha + forces.segment.accelerations[0])]
     return carry_from_base(forces, ACCELERATION, far), dict(zip(forces.disk.accelerations, far, strict=True))
 
 
 def _name_start_velocity(trace: Trace, forces: SceneForces) -> tuple[Carried, Known]:
-    """Velocity of the span's start."""
+    """Name the velocity of the span's start."""
     carried: Carried = {}
     known: Known = {}
     for name in TWIST if forces.span is not None else ():
@@ -85,7 +85,7 @@ def _name_start_velocity(trace: Trace, forces: SceneForces) -> tuple[Carried, Kn
 
 
 def name_motion(trace: Trace, forces: SceneForces) -> tuple[Reach, Carried, Known]:
-    """Poses and velocities of the far disk, of the core's points and of the span's start.
+    """Name poses and velocities of the far disk, of the core's points and of the span's start.
 
     Returns the segment's reach, what is carried on, and what the symbols of the forces stand for.
     """
@@ -98,7 +98,7 @@ def name_motion(trace: Trace, forces: SceneForces) -> tuple[Reach, Carried, Know
     reaches = core_reaches(forces, trace)
     known = known | moving | at_start | name_core_positions(trace, reaches)
     for point, to_point in reaches:
-        velocity = _end_velocity(trace, forces, to_point)
+        velocity = _name_end_velocity(trace, forces, to_point)
         known |= dict(zip(point.rates, velocity, strict=True))
     return reach, rotation | pose | motion | ends | ends_motion, known
 
@@ -117,7 +117,7 @@ def motion_step(forces: SceneForces) -> Step:
     acceleration, accelerating = _name_far_acceleration(trace, forces, reach)
     known |= accelerating
     for point, to_point in core_reaches(forces):
-        of_point = _end_acceleration(trace, forces, to_point)
+        of_point = _name_end_acceleration(trace, forces, to_point)
         known |= dict(zip(point.accelerations, of_point, strict=True))
     tensions = name_tensions(trace, forces.coupled, known, moves=True)
     name_forces(trace, forces, known)

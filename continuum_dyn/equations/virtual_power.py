@@ -48,7 +48,10 @@ def partial_velocity(
 
 @cache
 def derive_dynamics(structure: Structure) -> SceneForces:
-    """Forces, energies and powers of all effects of a scene."""
+    """Forces, energies and powers of all effects of a scene.
+
+    Raises ``InputError`` for an elastic or gravity load that has no potential.
+    """
     return derive(structure, _on_moving_base if structure.base_moves else _in_motion)
 
 

@@ -58,7 +58,7 @@ def pass_hole(
 def tensions_beyond_holes(
     trace: Trace, poses: sp.Matrix, coupled: list[CableSymbols]
 ) -> tuple[sp.Matrix, Carried]:
-    """The changes of poses, then of the tensions beyond the near holes; the latter are carried on."""
+    """Changes of the poses, then of the tensions beyond the near holes, which are carried on as well."""
     states = [*poses, *(symbol(f"shift_tension_{cable.number}") for cable in coupled)]
     carried: Carried = {}
     for state, cable in reversed(list(enumerate(coupled, start=len(poses)))):

@@ -18,7 +18,7 @@ WRENCH = ("force_x", "force_y", "torque")
 """Components of a pose, of its rates, and of what is dual to them: two along the base axes, one about z."""
 
 AXES, ANGLE = range(2), 2
-"""Rows of the position in a pose, and the row of the angle; alike for the others."""
+"""Rows of the position in a pose, and the row of the angle; the same in a twist or wrench."""
 
 NEAR_ROTATION = symbol("cosine"), symbol("sine")
 """Cosine and sine of the near disk's angle."""
@@ -59,7 +59,7 @@ def perpendicular(vector: sp.Matrix) -> sp.Matrix:
 
 
 def transition(reach: sp.Matrix) -> sp.Matrix:
-    """The derivative X of a pose by another one that it is rigidly held to, ``reach`` away. Shape (3, 3)."""
+    """The derivative X of a pose by that of a rigid body's point ``reach`` (m) before it, shape (3, 3)."""
     across_x, across_y = perpendicular(reach)
     return sp.Matrix([[1, 0, across_x], [0, 1, across_y], [0, 0, 1]])
 

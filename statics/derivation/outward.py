@@ -41,7 +41,7 @@ def carry_from_base(forces: SceneForces, names: Sequence[str], far: Sequence[Any
 
 
 def name_rotation(trace: Trace, forces: SceneForces) -> Carried:
-    """Cosine and sine of the far disk's angle by angle addition, kept on the unit circle."""
+    """Name cosine and sine of the far disk's angle, by angle addition, kept on the unit circle."""
     theta = at_base(forces, "base_theta")
     d, half = forces.segment.displacement, forces.segment.half_angle
     along, across = trace.name("half_chord", (d / forces.segment.length).applyfunc(sp.cancel))
@@ -57,7 +57,7 @@ def name_rotation(trace: Trace, forces: SceneForces) -> Carried:
 
 
 def name_far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[Carried, Known]:
-    """Pose of the far disk. Forces that depend on its angle need ``name_rotation`` in the trace as well."""
+    """Name the far disk's pose. Forces that depend on its angle need ``name_rotation`` as well."""
     (x, y), theta = split(components("near", POSE))
     reach_x, reach_y = reach.whole
     values = (x + reach_x, y + reach_y, theta + forces.segment.bend_angle)
@@ -69,7 +69,7 @@ def name_far_pose(trace: Trace, forces: SceneForces, reach: Reach) -> tuple[Carr
 
 
 def name_core_positions(trace: Trace, reaches: list[tuple[CorePointSymbols, Reach]]) -> Known:
-    """Positions of the core's points."""
+    """Name the positions of the core's points."""
     near, _ = split(components("near", POSE))
     known = {}
     for point, reach in reaches:
@@ -87,7 +87,7 @@ def at_span_start(near: Any, before: Any) -> Any:
 def name_span_ends(
     trace: Trace, forces: SceneForces, rotation: Mapping[str, Any], known: Known
 ) -> tuple[Carried, Known]:
-    """Pose of the span's start and lengths of its cables, with everything already ``known``."""
+    """Name the pose of the span's start and its cables' lengths; returns ``known`` with them."""
     carried: Carried = {}
     if forces.span is None:
         return carried, known | _name_cable_lengths(trace, forces.segment.cables, {})
@@ -104,7 +104,7 @@ def name_span_ends(
 
 
 def _name_cable_lengths(trace: Trace, cables: list[CableSymbols], known: Known) -> Known:
-    """Lengths that are square roots, with the powers of them that forces contain."""
+    """Name cable lengths that are square roots; their powers, as forces contain them, are then known."""
     powers: Known = {}
     for number, cable in enumerate(cables, start=1):
         if cable.length.is_Pow and cable.length == sp.sqrt(squared := cable.length**2):
@@ -115,7 +115,7 @@ def _name_cable_lengths(trace: Trace, cables: list[CableSymbols], known: Known) 
 
 
 def name_poses(trace: Trace, forces: SceneForces, reach: Reach | None = None) -> tuple[Carried, Known]:
-    """Poses of the far disk and of the span's start; names the reach unless the trace has it already."""
+    """Name the poses of the far disk and of the span's start, and the reach unless it is given."""
     rotation = name_rotation(trace, forces)
     pose, known = name_far_pose(trace, forces, reach or reach_of(forces, trace))
     ends, known = name_span_ends(trace, forces, rotation, known)
@@ -123,7 +123,7 @@ def name_poses(trace: Trace, forces: SceneForces, reach: Reach | None = None) ->
 
 
 def _name_poses_and_core(trace: Trace, forces: SceneForces) -> tuple[Carried, Known]:
-    """Poses of the far disk and of the span's start, and positions of the core's points."""
+    """Name the poses of the far disk and of the span's start, and the positions of the core's points."""
     carried, known = name_poses(trace, forces, reach_of(forces, trace))
     return carried, known | name_core_positions(trace, core_reaches(forces, trace))
 
