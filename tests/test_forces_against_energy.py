@@ -22,8 +22,9 @@ from whole_arm import (
 )
 
 from statics.arm import Cable
-from statics.derivation.segment import SegmentSymbols, symbol
+from statics.derivation.segment import SegmentSymbols
 from statics.derivation.sigma import Sigma
+from statics.derivation.trace import symbol
 from statics.effects.cables import disk_loads
 from statics.equilibria import equilibrium
 from statics.passes.rest_passes import REST

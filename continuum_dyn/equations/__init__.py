@@ -1,1 +1,1 @@
-"""From a scene's structure to the steps of its passes in motion, and a scene's equations by name."""
+"""Equations of motion: a scene's structure comes in; the steps of its passes in motion go out."""

@@ -1,8 +1,11 @@
-"""The passes of a scene in motion, in the three sets that are derived together."""
+"""Passes of a scene in motion, in the three sets that are derived together."""
 
 from continuum_dyn.equations import momentum_steps, motion_steps
 from continuum_dyn.equations.virtual_power import derive_dynamics
-from statics.derivation import recursion
+from statics.derivation.elimination import eliminate_step, substitute_step
+from statics.derivation.newton_matrix import ACCELERATION, CONSERVATIVE, IMPLICIT
+from statics.derivation.outward import clearance_step, displacement_step
+from statics.derivation.residual import residual_step
 from statics.derivation.step import Step
 from statics.derivation.virtual_work import SceneForces
 from statics.structure import Structure
@@ -16,24 +19,24 @@ def derive_motion(structure: Structure) -> Derived:
     return forces, [
         *motion_steps.measuring_steps(forces),
         motion_steps.motion_step(forces),
-        recursion.residual_step(forces),
-        recursion.eliminate_step(forces, recursion.IMPLICIT),
-        recursion.substitute_step(forces, recursion.IMPLICIT),
-        recursion.displacement_step(forces),
-        recursion.clearance_step(forces),
+        residual_step(forces),
+        eliminate_step(forces, IMPLICIT),
+        substitute_step(forces, IMPLICIT),
+        displacement_step(forces),
+        clearance_step(forces),
         motion_steps.observe_motion_step(forces),
     ]
 
 
 def derive_linearized(structure: Structure) -> Derived:
-    """Passes of the accelerations, with the mass matrix alone, and of their exact derivatives."""
+    """Passes of the accelerations, with the mass matrix M, and of their exact derivatives."""
     forces = derive_dynamics(structure)
     return forces, [
         *motion_steps.measuring_steps(forces),
         motion_steps.motion_step(forces),
-        recursion.residual_step(forces),
-        recursion.eliminate_step(forces, recursion.ACCELERATION),
-        recursion.substitute_step(forces, recursion.ACCELERATION),
+        residual_step(forces),
+        eliminate_step(forces, ACCELERATION),
+        substitute_step(forces, ACCELERATION),
         *motion_steps.measuring_tangents(forces),
         motion_steps.motion_tangent_step(forces),
         motion_steps.residual_tangent_step(forces),
@@ -46,10 +49,10 @@ def derive_midpoint(structure: Structure) -> Derived:
     return forces, [
         *motion_steps.measuring_steps(forces),
         momentum_steps.velocity_step(forces),
-        recursion.residual_step(forces),
+        residual_step(forces),
         momentum_steps.momentum_step(forces),
-        recursion.eliminate_step(forces, momentum_steps.CONSERVATIVE),
-        recursion.substitute_step(forces, momentum_steps.CONSERVATIVE),
-        recursion.displacement_step(forces),
-        recursion.clearance_step(forces),
+        eliminate_step(forces, CONSERVATIVE),
+        substitute_step(forces, CONSERVATIVE),
+        displacement_step(forces),
+        clearance_step(forces),
     ]

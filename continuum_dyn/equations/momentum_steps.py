@@ -1,4 +1,4 @@
-"""One step of the sweeps for momenta: p = dT/du and dT/dq on the chain, O(n).
+"""Steps of the passes for momenta: p = dT/du and dT/dq on the chain, O(n).
 
 A disk beyond segment j moves with it as a rigid body does, so only the sums of momenta beyond count: P,
 linear, and N, angular about the far disk, carried inwards by the transition's transpose as reactions are.
@@ -11,31 +11,28 @@ reach:
 A point of the core moves with its own segment as a far disk does, but nothing beyond turns about it: it adds
 S_a . P, and P . (omega0 z x r_a + r_ab u_b) with its own reach.
 
-The second is p_a's with the partials' own rates: dv/dq_a = d(dv/du_a)/dt (Lagrange), and what lies beyond
+dT/dq_a is p_a with the rates of the partials, dv/dq_a = d(dv/du_a)/dt (Lagrange), and everything beyond
 turns about the far disk. A payload beside its disk's centre makes the disk's T depend on its angle, and adds
-no term: turned together with its velocity a body keeps its T, so dT/dtheta + P . (z x v) = 0 for each disk.
+no term: a body rotated together with its velocity keeps its T, so dT/dtheta + P . (z x v) = 0 for each disk.
 """
 
 from dataclasses import replace
-from typing import Any
 
 import sympy as sp
 
-from continuum_dyn.equations.motion_steps import disk_in_motion, integrated
-from statics.derivation.cable_tension import along_cables, drive_power
-from statics.derivation.reach import Reach, core_reaches, reach_of, turned
-from statics.derivation.recursion import Weights, name_forces, placed
-from statics.derivation.segment import symbol
-from statics.derivation.step import INWARD, OUTWARD, Step
-from statics.derivation.trace import Trace
+from continuum_dyn.equations.motion_steps import integrand, name_motion
+from statics.derivation.cable_tension import drive_power, name_tensions
+from statics.derivation.forces_by_name import name_forces, rewrite
+from statics.derivation.frames import AXES, MOMENTUM, POSE, linear, perpendicular
+from statics.derivation.outward import sum_along
+from statics.derivation.reach import Reach, core_reaches, reach_of
+from statics.derivation.step import INWARD, OUTWARD, Step, carry_from_zero
+from statics.derivation.trace import Trace, column_by_name, jacobian, symbol, symbol_column, symbol_matrix
 from statics.derivation.virtual_work import Forces, SceneForces, Symbols
-
-CONSERVATIVE = Weights(1, 0, symbol("stiffness_weight"))
-"""Mass, and stiffness times the weight that the sweep is handed."""
 
 
 def conservative(forces: SceneForces) -> SceneForces:
-    """The scene with -dV/dq of each part for its force: without inertia's forces, and undamped."""
+    """Forces of a scene without inertia and damping: -dV/dq at each site."""
     return replace(
         forces,
         on_segment=_conservative(forces.on_segment, forces.segment),
@@ -45,93 +42,80 @@ def conservative(forces: SceneForces) -> SceneForces:
     )
 
 
-def _conservative(part: Forces, at: Symbols) -> Forces:
-    force = part.force.subs(dict.fromkeys([*at.rates, *at.accelerations], 0))
+def _conservative(part: Forces, site: Symbols) -> Forces:
+    force = part.force.subs(dict.fromkeys([*site.rates, *site.accelerations], 0))
     none = sp.zeros(*part.damping.shape)
-    return replace(part, force=force, damping=none, stiffness=-force.jacobian(at.coordinates))
+    return replace(part, force=force, damping=none, stiffness=-jacobian(force, site.coordinates))
 
 
-def _momentum(part: Forces, at: Symbols) -> sp.Matrix:
-    """Momentum dT/du of one segment, disk or point of the core by itself."""
-    return sp.Matrix([part.energies["kinetic_energy"].diff(rate) for rate in at.rates])
+def _momentum(part: Forces, site: Symbols) -> sp.Matrix:
+    """Momentum dT/du of one segment, disk or point of the core by itself, shape (coordinates, 1)."""
+    return jacobian(sp.Matrix([part.energies["kinetic_energy"]]), site.rates).T
 
 
 def _name_partial_rates(trace: Trace, forces: SceneForces, reach: Reach) -> None:
     """Name the time derivative of every column of the reach's partials."""
-    spin = symbol("near_angular_velocity")
-    for a, row in enumerate(reach.by_qq):
-        rate = spin * turned(reach.by_q[:, a])
+    omega = symbol("near_angular_velocity")
+    for a, (slope, row) in enumerate(zip(reach.by_q, reach.by_qq, strict=True)):
+        rate = omega * perpendicular(slope)
         for second, u in zip(row, forces.segment.rates, strict=True):
             rate += second * u
-        for axis in range(2):
-            trace.name(f"{reach.prefix}partial_rate_{axis}{a}", rate[axis])
+        for axis, value in enumerate(rate):
+            trace.always_name(f"{reach.prefix}partial_rate_{axis}{a}", value)
 
 
-def _partial_rate(reach: Reach) -> sp.Matrix:
+def _partial_rates(reach: Reach) -> sp.Matrix:
     """Partial rates by name, shape (2, dofs)."""
-    name = f"{reach.prefix}partial_rate"
-    return sp.Matrix(*reach.by_q.shape, lambda axis, a: symbol(f"{name}_{axis}{a}"))
+    return symbol_matrix(f"{reach.prefix}partial_rate", len(AXES), len(reach.by_q))
 
 
 def velocity_step(forces: SceneForces) -> Step:
-    """Outwards: geometry, velocities, momenta of the disks, and the loads of a conservative scene."""
+    """Outward pass: geometry, velocities, momenta of the disks, and the loads of a conservative scene."""
     trace = Trace()
-    reach, carried, at = disk_in_motion(trace, forces)
-    cables = along_cables(trace, forces.coupled, at, moves=False)
-    name_forces(trace, forces, at)
+    reach, carried, known = name_motion(trace, forces)
+    tensions = name_tensions(trace, forces.coupled, known, moves=False)
+    name_forces(trace, forces, known)
     _name_partial_rates(trace, forces, reach)
     for row, value in enumerate(_momentum(forces.on_disk, forces.disk)):
-        trace.name(f"disk_momentum_{row}", placed(value, at))
-    for (point, of_core), part in zip(core_reaches(forces), forces.on_core, strict=True):
-        _name_partial_rates(trace, forces, of_core)
-        trace.let(f"{of_core.prefix}momentum", placed(_momentum(part, point), at))
-    trace.let("segment_momentum", _momentum(forces.on_segment, forces.segment))
-    power = integrated(forces, "input_power", at)
+        trace.always_name(f"disk_momentum_{row}", rewrite(value, known))
+    for (point, to_point), part in zip(core_reaches(forces), forces.on_core, strict=True):
+        _name_partial_rates(trace, forces, to_point)
+        trace.name(f"{to_point.prefix}momentum", rewrite(_momentum(part, point), known))
+    trace.name("segment_momentum", _momentum(forces.on_segment, forces.segment))
+    power = {"input_power": integrand(forces, "input_power", known)}
     return Step(
         "velocity",
         "Outwards: reach, velocity, momentum of the disk, loads without inertia; power in.",
         OUTWARD,
         ("q", "u", "inputs", "segments", "disks", "chain"),
         trace,
-        results={
-            "input_power": (
-                drive_power(forces.coupled),
-                symbol("input_power") + trace.let("added_input_power", power),
-            )
-        },
-        carried=carried | cables,
+        results=sum_along(trace, power, {"input_power": drive_power(forces.coupled)}),
+        carried=carried | tensions,
     )
 
 
 def momentum_step(forces: SceneForces) -> Step:
-    """Inwards: the momentum p = dT/du of a segment's coordinates, and dT/dq."""
-    trace = Trace()
-    reach = reach_of(forces)
-    carried = sp.Matrix([symbol(name) for name in ("momentum_x", "momentum_y", "angular_momentum")])
-    whole = trace.let("beyond", carried + sp.Matrix([symbol(f"disk_momentum_{row}") for row in range(3)]))
-    linear, far = whole[:2, 0], sp.Matrix([symbol("far_velocity_0"), symbol("far_velocity_1")])
-    own = [
-        value if value.is_Atom else symbol(f"segment_momentum_{a}")
-        for a, value in enumerate(_momentum(forces.on_segment, forces.segment))
-    ]
-    turning = trace.let("turning", -linear.dot(turned(far)))
-    momentum = reach.partials.T * whole + sp.Matrix(own)
-    slope = _partial_rate(reach).T * linear + reach.turn_by_q.T * turning
-    at_near: Any = reach.transition.T * whole
-    for _, of_core in core_reaches(forces):
-        of_point = sp.Matrix([symbol(f"{of_core.prefix}momentum_{axis}") for axis in range(2)])
-        momentum += of_core.by_q.T * of_point
-        slope += _partial_rate(of_core).T * of_point
-        at_near += of_core.transition[:2, :].T * of_point
+    """Inward pass: momentum p = dT/du of a segment's coordinates, and dT/dq."""
+    trace, reach = Trace(), reach_of(forces)
+    before = sp.Matrix([symbol(name) for name in MOMENTUM])
+    beyond = trace.name("beyond", before + symbol_column("disk_momentum", len(POSE)))
+    own = column_by_name("segment_momentum", _momentum(forces.on_segment, forces.segment))
+    far_velocity = symbol_column("far_velocity", len(AXES))
+    turning = trace.name("turning", -linear(beyond).dot(perpendicular(far_velocity)))
+    momentum = reach.partials.T * beyond + own
+    slope = _partial_rates(reach).T * linear(beyond) + reach.angle_by_q.T * turning
+    at_near = reach.transition.T * beyond
+    for _, to_point in core_reaches(forces):
+        of_point = symbol_column(f"{to_point.prefix}momentum", len(AXES))
+        momentum += to_point.position_partials.T * of_point
+        slope += _partial_rates(to_point).T * of_point
+        at_near += to_point.position_transition.T * of_point
     return Step(
         "momentum",
         "Inwards: momentum of the segment's coordinates, and the slope of the kinetic energy by them.",
         INWARD,
         ("chain", "momentum", "slope"),
         trace,
-        carried={str(name): (0.0, value) for name, value in zip(carried, at_near, strict=True)},
-        stores={
-            "momentum": list(momentum),
-            "slope": list(slope),
-        },
+        carried=carry_from_zero(MOMENTUM, at_near),
+        stores={"momentum": list(momentum), "slope": list(slope)},
     )

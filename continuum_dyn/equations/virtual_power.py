@@ -14,6 +14,7 @@ import sympy as sp
 
 from continuum_dyn.equations.transport import with_transport
 from statics.derivation.segment import SegmentSymbols, SpanSymbols
+from statics.derivation.trace import derivative, jacobian
 from statics.derivation.virtual_work import (
     Forces,
     Groups,
@@ -29,61 +30,64 @@ from statics.structure import Structure
 
 
 def velocity(displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol]) -> Any:
-    """Time derivative of a displacement by the chain rule."""
+    """Time derivative of a scalar or vector displacement by the chain rule, with its shape."""
     if isinstance(displacement, Sequence):
         return tuple(velocity(component, coordinates, rates) for component in displacement)
-    return sum(sp.diff(displacement, q) * u for q, u in zip(coordinates, rates, strict=True))
+    return sum(derivative(displacement, q) * u for q, u in zip(coordinates, rates, strict=True))
 
 
 def partial_velocity(
     displacement: Any, coordinates: Sequence[sp.Symbol], rates: Sequence[sp.Symbol], i: int
 ) -> Any:
-    """dr'/du_i, with the shape of the displacement."""
+    """dr'/du_i of a scalar or vector displacement, with its shape. Kane and Levinson 1985."""
     moving = velocity(displacement, coordinates, rates)
     if isinstance(moving, Sequence):
-        return tuple(sp.diff(component, rates[i]) for component in moving)
-    return sp.diff(moving, rates[i])
+        return tuple(derivative(component, rates[i]) for component in moving)
+    return derivative(moving, rates[i])
 
 
 @cache
 def derive_dynamics(structure: Structure) -> SceneForces:
-    """Forces, energies and powers of all effects of the scene."""
+    """Forces, energies and powers of all effects of a scene.
+
+    Raises ``InputError`` for an elastic or gravity load that has no potential.
+    """
     return derive(structure, _on_moving_base if structure.base_moves else _in_motion)
 
 
-def _in_motion(groups: Groups, at: Symbols) -> Forces:
-    force = _total(groups, at)
-    loads = _loads(groups, at)
-    still = loads.subs(dict.fromkeys(at.rates, 0))
-    mass, damping = -force.jacobian(at.accelerations), -loads.jacobian(at.rates)
+def _in_motion(groups: Groups, site: Symbols) -> Forces:
+    force = _total(groups, site)
+    loads = _loads(groups, site)
+    still = loads.subs(dict.fromkeys(site.rates, 0))
+    mass, damping = -jacobian(force, site.accelerations), -jacobian(loads, site.rates)
     energies = by_account(
         [group for group in groups if group[0].account in ("elastic_energy", "gravity_energy")],
-        lambda pair: potential(pair, at.coordinates),
+        lambda pair: potential(pair, site.coordinates),
     )
-    energies["kinetic_energy"] = (sp.Matrix([at.rates]) * mass * sp.Matrix(at.rates))[0] / 2
+    energies["kinetic_energy"] = (sp.Matrix([site.rates]) * mass * sp.Matrix(site.rates))[0] / 2
     powers = by_account(
         [group for group in groups if group[0].account in ("input_power", "dissipated_power")],
-        lambda pair: dot(pair.load, velocity(pair.displacement, at.coordinates, at.rates)),
+        lambda pair: dot(pair.load, velocity(pair.displacement, site.coordinates, site.rates)),
     )
     if "dissipated_power" in powers:
         powers["dissipated_power"] *= -1
-    return Forces(force, mass, damping, -still.jacobian(at.coordinates), energies, powers)
+    return Forces(force, mass, damping, -jacobian(still, site.coordinates), energies, powers)
 
 
-def _on_moving_base(groups: Groups, at: Symbols) -> Forces:
-    part = _in_motion(groups, at)
-    if isinstance(at, SegmentSymbols | SpanSymbols):
+def _on_moving_base(groups: Groups, site: Symbols) -> Forces:
+    part = _in_motion(groups, site)
+    if isinstance(site, SegmentSymbols | SpanSymbols):
         return part
-    return with_transport(part, _loads(groups, at), at)
+    return with_transport(part, _loads(groups, site), site)
 
 
-def _loads(groups: Groups, at: Symbols) -> sp.Matrix:
-    """Generalized forces of all but inertia."""
-    return _total([group for group in groups if group[0].account != "kinetic_energy"], at)
+def _loads(groups: Groups, site: Symbols) -> sp.Matrix:
+    """Generalized forces of all effects but inertia."""
+    return _total([group for group in groups if group[0].account != "kinetic_energy"], site)
 
 
-def _total(groups: Groups, at: Symbols) -> sp.Matrix:
+def _total(groups: Groups, site: Symbols) -> sp.Matrix:
     pairs = [pair for _, group in groups for pair in group]
     return generalized_force(
-        pairs, lambda r, i: partial_velocity(r, at.coordinates, at.rates, i), at.coordinates
+        pairs, lambda r, i: partial_velocity(r, site.coordinates, site.rates, i), site.coordinates
     )

@@ -1,1 +1,1 @@
-"""From a scene's structure to the steps of its passes, as sympy expressions."""
+"""Derivation: a scene's structure comes in; the steps of its passes, as sympy expressions, go out."""

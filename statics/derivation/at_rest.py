@@ -1,8 +1,10 @@
-"""The passes of a scene at rest: poses and loads outward, residual, elimination, substitution."""
+"""Passes of a scene at rest: poses and loads outward, residual, elimination, substitution."""
 
 from dataclasses import replace
 
-from statics.derivation import cable_steps, recursion
+from statics.derivation import cable_steps, newton_matrix, outward
+from statics.derivation.elimination import eliminate_step, substitute_step
+from statics.derivation.residual import residual_step
 from statics.derivation.step import Step
 from statics.derivation.virtual_work import SceneForces, derive_statics
 from statics.structure import Structure
@@ -13,13 +15,12 @@ def derive_rest(structure: Structure) -> tuple[SceneForces, list[Step]]:
     forces = derive_statics(structure)
     steps = [
         *cable_steps.measuring_steps(forces),
-        recursion.pose_step(forces),
-        recursion.residual_step(forces),
-        recursion.eliminate_step(forces, recursion.STATIC),
-        recursion.substitute_step(forces, recursion.STATIC),
-        recursion.observe_step(forces),
+        outward.pose_step(forces),
+        residual_step(forces),
+        eliminate_step(forces, newton_matrix.STATIC),
+        substitute_step(forces, newton_matrix.STATIC),
+        outward.observe_step(forces),
     ]
     if any(kind.rubs for kind in structure.cable_kinds) and not structure.has_follower_loads:
-        held = recursion.eliminate_step(forces, recursion.HELD)
-        steps.append(replace(held, name="eliminate_held"))
+        steps.append(replace(eliminate_step(forces, newton_matrix.FIXED_TENSION), name="eliminate_held"))
     return forces, steps

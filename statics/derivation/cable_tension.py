@@ -1,7 +1,7 @@
 """The tension along a cable that rubs at its holes, or that is driven by its length.
 
-Such a tension hangs together over all the segments that the cable passes. With Lambda_i the cable's length
-beyond the near hole of stretch i, Lambda_1 all of it, the drive's tension is
+Such a tension couples all segments that the cable passes. With Lambda_i the cable's length beyond the near
+hole of span i, Lambda_1 all of it, the drive's tension is
 
     T_0 = tension,   or   T_0 = k max(0, Lambda_1 - rest length + displacement):   a cable never pushes
 
@@ -17,21 +17,20 @@ from typing import Any
 
 import sympy as sp
 
-from statics.derivation.segment import CableSymbols, symbol
-from statics.derivation.trace import Trace
-
-Carried = dict[str, tuple[Any, Any]]
+from statics.derivation.segment import CableSymbols
+from statics.derivation.step import Carried
+from statics.derivation.trace import Trace, symbol
 
 
 def drive_tension(cable: CableSymbols) -> Any:
-    """Tension of a cable at the base; from its length beyond the first hole, all of it, if driven by that."""
+    """Tension of a cable at the base, N; if driven by its length, from its length beyond the first hole."""
     if not cable.kind.driven_by_length:
         return symbol(f"tension_{cable.number}")
     return symbol(f"cable_stiffness_{cable.number}") * sp.Max(0, _stretch(cable))
 
 
-def drive_slope(cable: CableSymbols) -> Any:
-    """Derivative of that tension by the cable's length."""
+def _drive_slope(cable: CableSymbols) -> Any:
+    """Derivative of ``drive_tension`` by the cable's length, N/m."""
     if not cable.kind.driven_by_length:
         return 0.0
     return symbol(f"cable_stiffness_{cable.number}") * sp.Heaviside(_stretch(cable))
@@ -52,7 +51,7 @@ def stored_in_cables(cables: list[CableSymbols]) -> Any:
 
 
 def drive_potential(cables: list[CableSymbols]) -> Any:
-    """Stored energy of driven cables less a constant tension's potential, T_0 Lambda_1."""
+    """Stored energy (J) of length-driven cables less a constant tension's potential, T_0 Lambda_1."""
     total = stored_in_cables(cables)
     for cable in cables:
         if cable.kind.driven_by_length:
@@ -61,7 +60,7 @@ def drive_potential(cables: list[CableSymbols]) -> Any:
 
 
 def drive_power(cables: list[CableSymbols]) -> Any:
-    """Power (W) put into such cables less what a constant tension's would be, -T_0 Lambda_1'."""
+    """Power (W) put into length-driven cables less a constant tension's, -T_0 Lambda_1'."""
     total: Any = 0.0
     for cable in cables:
         if cable.kind.driven_by_length:
@@ -72,41 +71,41 @@ def drive_power(cables: list[CableSymbols]) -> Any:
     return total
 
 
-def along_cables(trace: Trace, cables: list[CableSymbols], at: dict[Any, Any], moves: bool) -> Carried:
-    """Tensions on one stretch, and how they change with what lies beyond, for the coupled cables.
+def name_tensions(trace: Trace, cables: list[CableSymbols], known: dict[Any, Any], moves: bool) -> Carried:
+    """Name the tensions of coupled cables on one span, and their derivatives; return what is carried on.
 
     Names ``tension_lost_c`` and, for the elimination, ``hole_factor_c``, ``place_slope_c`` and
-    ``rate_slope_c``: T_i's derivatives by T_{i-1}, Lambda_i and Lambda_i'. Returns what is carried on.
+    ``rate_slope_c``: T_i's derivatives by T_{i-1}, Lambda_i and Lambda_i'.
     """
     carried: Carried = {}
     for cable in cables:
-        carried |= _along(trace, cable, at, moves)
+        carried |= _name_tension(trace, cable, known, moves)
     return carried
 
 
-def _along(trace: Trace, cable: CableSymbols, at: dict[Any, Any], moves: bool) -> Carried:
+def _name_tension(trace: Trace, cable: CableSymbols, known: dict[Any, Any], moves: bool) -> Carried:
     c, kind = cable.number, cable.kind
     carried: Carried = {}
     slope: Any = sp.Integer(0)
     if kind.driven_by_length:
         slope = symbol(f"drive_slope_{c}")
         carried |= {f"tension_{c}": (drive_tension(cable), symbol(f"tension_{c}"))}
-        carried |= {f"drive_slope_{c}": (drive_slope(cable), (1 - cable.passes) * slope)}
+        carried |= {f"drive_slope_{c}": (_drive_slope(cable), (1 - cable.passes) * slope)}
     if not kind.rubs:
-        trace.name(f"place_slope_{c}", slope)
+        trace.always_name(f"place_slope_{c}", slope)
         return carried
     before, angle_before = symbol(f"tension_before_{c}"), symbol(f"angle_before_{c}")
-    angle = trace.let(f"cable_angle_{c}", cable.angle.xreplace(at))
-    turn = trace.let(f"cable_turn_{c}", symbol(f"friction_{c}") * sp.Abs(angle - angle_before))
-    slip, per_place, per_rate = _slip(c, moves)
-    sign = trace.let(f"slip_sign_{c}", sp.tanh(slip))
-    factor = trace.name(f"hole_factor_{c}", sp.exp(-turn * sign))
-    tension = trace.let(f"tension_here_{c}", before * factor)
-    trace.let(f"tension_lost_{c}", symbol(f"tension_{c}") - tension)
-    by_slip = trace.let(f"slip_slope_{c}", -turn * tension * (1 - sign**2))
-    trace.name(f"place_slope_{c}", factor * slope + by_slip * per_place)
-    trace.name(f"rate_slope_{c}", by_slip * per_rate)
-    far = trace.let(f"far_cable_angle_{c}", cable.far_angle.xreplace(at))
+    angle = trace.name(f"cable_angle_{c}", cable.angle.xreplace(known))
+    turn = trace.name(f"cable_turn_{c}", symbol(f"friction_{c}") * sp.Abs(angle - angle_before))
+    slip, slip_by_length, slip_by_rate = _slip(c, moves)
+    sign = trace.name(f"slip_sign_{c}", sp.tanh(slip))
+    factor = trace.always_name(f"hole_factor_{c}", sp.exp(-turn * sign))
+    tension = trace.name(f"tension_here_{c}", before * factor)
+    trace.name(f"tension_lost_{c}", symbol(f"tension_{c}") - tension)
+    by_slip = trace.name(f"slip_slope_{c}", -turn * tension * (1 - sign**2))
+    trace.always_name(f"place_slope_{c}", factor * slope + by_slip * slip_by_length)
+    trace.always_name(f"rate_slope_{c}", by_slip * slip_by_rate)
+    far = trace.name(f"far_cable_angle_{c}", cable.far_angle.xreplace(known))
     passes = cable.passes
     return carried | {
         f"tension_before_{c}": (drive_tension(cable), passes * tension + (1 - passes) * before),
@@ -115,7 +114,7 @@ def _along(trace: Trace, cable: CableSymbols, at: dict[Any, Any], moves: bool) -
 
 
 def _slip(number: int, moves: bool) -> tuple[Any, Any, Any]:
-    """The slip through a hole in units of the one that friction wants, and its derivatives."""
+    """The slip s through a hole, and its derivatives by the length beyond and by that length's rate."""
     if moves:
         speed = symbol(f"slip_speed_{number}")
         return -symbol(f"length_beyond_rate_{number}") / speed, sp.Integer(0), -1 / speed

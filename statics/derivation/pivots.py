@@ -1,9 +1,7 @@
-"""Inverse of a pivot that may be indefinite, made positive: text for generated kernels.
-
-SINGULAR and TINY: pivots below this part of the torque scale, or below this at all, count as that large.
-"""
+"""Source text, for generated kernels, of the inverse of a pivot that may be indefinite, made positive."""
 
 SINGULAR, TINY = 1e-9, 1e-30
+"""Smallest size that a pivot counts as: over the torque scale, and in N m."""
 
 _INVERSE_1 = f'''
 def pivot_inverse_1(a, size, keep_sign):

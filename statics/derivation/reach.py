@@ -5,92 +5,101 @@ derivatives stay short.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import sympy as sp
 
-from statics.derivation.segment import CorePointSymbols, symbol
+from statics.derivation.frames import NEAR_ROTATION, linear, perpendicular, rotate, transition
+from statics.derivation.segment import CorePointSymbols
 from statics.derivation.sigma import Sigma
-from statics.derivation.trace import Trace
+from statics.derivation.trace import Trace, derivative, jacobian, symbol_column
 from statics.derivation.virtual_work import SceneForces
 
 
 @dataclass(frozen=True)
 class Reach:
-    """An end seen from the segment's near disk, in base axes, with its derivatives by q.
+    """The vector from a segment's near disk to one of its points, in base axes, and its derivatives by q.
 
-    ``prefix`` begins the names of all that is computed of that end; the far disk's is empty.
+    ``prefix`` begins the names of everything computed of that point; the far disk's is empty.
     """
 
     prefix: str
-    whole: sp.Matrix  # (2, 1)
-    by_q: sp.Matrix  # (2, dofs)
+    whole: sp.Matrix  # (2, 1), m
+    by_q: list[sp.Matrix]  # dofs of (2, 1)
     by_qq: list[list[sp.Matrix]]  # (dofs, dofs) of (2, 1)
-    turn_by_q: sp.Matrix  # (1, dofs)
+    angle_by_q: sp.Matrix  # (1, dofs)
+
+    @property
+    def position_partials(self) -> sp.Matrix:
+        """The partials of the point's position by the segment's coordinates, shape (2, dofs)."""
+        return sp.Matrix.hstack(*self.by_q)
 
     @property
     def partials(self) -> sp.Matrix:
-        """The partials S, shape (3, dofs): the end's pose by the segment's coordinates."""
-        return self.by_q.col_join(self.turn_by_q)
+        """The partials S of the point's pose by the segment's coordinates, shape (3, dofs)."""
+        return self.position_partials.col_join(self.angle_by_q)
 
     @property
     def transition(self) -> sp.Matrix:
-        """The transition X, shape (3, 3): the end's pose by the near disk's."""
-        across = turned(self.whole)
-        return sp.Matrix([[1, 0, across[0]], [0, 1, across[1]], [0, 0, 1]])
+        """The partials X of the point's pose by the near disk's, shape (3, 3)."""
+        return transition(self.whole)
 
-
-def turned(vector: sp.Matrix) -> sp.Matrix:
-    """The product z x vector, in the plane."""
-    return sp.Matrix([-vector[1], vector[0]])
+    @property
+    def position_transition(self) -> sp.Matrix:
+        """The partials of the point's position by the near disk's pose, shape (2, 3)."""
+        return linear(self.transition)
 
 
 def reach_of(forces: SceneForces, trace: Trace | None = None, to: CorePointSymbols | None = None) -> Reach:
-    """The reach to the far disk or to a point of the core.
+    """The reach to the far disk, or to a point of the core.
 
-    Derived into ``trace``, or by name only where another step has derived it.
+    Named in ``trace``; without one by the names that an earlier step gave.
     """
     segment = forces.segment
     prefix, fraction = ("", 1) if to is None else (f"{to.name}_", to.fraction)
     half, dofs = fraction * segment.half_angle, range(len(segment.coordinates))
-    along = _along_chord(trace, prefix, half)
+    rotation = None if trace is None else _chord_rotation(trace, prefix, half)
 
-    def named(name: str, local: sp.Matrix) -> sp.Matrix:
-        if trace is not None:
-            return trace.let(prefix + name, along * local)
-        return sp.Matrix([symbol(f"{prefix}{name}_{row}") for row in range(2)]) if any(local) else local
+    def in_base_axes(name: str, vector: sp.Matrix) -> sp.Matrix:
+        if trace is not None and rotation is not None:
+            return trace.name(prefix + name, sp.Matrix(rotate(rotation, vector)))
+        return symbol_column(prefix + name, 2) if any(vector) else vector
 
-    def by(local: sp.Matrix, q: sp.Symbol) -> sp.Matrix:
-        return local.diff(q) + half.diff(q) * turned(local)
-
-    d = sp.Matrix([fraction * segment.length * Sigma(0, half), 0])
-    d_q = [by(d, q) for q in segment.coordinates]
+    whole, by_q, by_qq = _along_chord(fraction * segment.length, half, tuple(segment.coordinates))
     second = {
-        (a, b): named(f"reach_{a}{b}", by(d_q[a], segment.coordinates[b]))
-        for a in dofs
-        for b in dofs
-        if a <= b
+        (a, b): in_base_axes(f"reach_{a}{b}", vector)
+        for a, row in enumerate(by_qq)
+        for b, vector in enumerate(row[a:], start=a)
     }
     return Reach(
         prefix,
-        named("reach", d),
-        sp.Matrix.hstack(*[named(f"reach_q{a}", d_q[a]) for a in dofs]),
+        in_base_axes("reach", whole),
+        [in_base_axes(f"reach_q{a}", vector) for a, vector in enumerate(by_q)],
         [[second[min(a, b), max(a, b)] for b in dofs] for a in dofs],
         fraction * sp.Matrix([[1, *[0 for _ in segment.coordinates[1:]]]]),
     )
 
 
-def _along_chord(trace: Trace | None, prefix: str, half: Any) -> sp.Matrix:
-    """Rotation from the axes of the chord, at half the angle of its end, to the base's."""
-    if trace is None:
-        return sp.eye(2)
-    cosine, sine = symbol("cosine"), symbol("sine")
-    turn_cos, turn_sin = Sigma(-1, half), trace.let(f"{prefix}half_sine", half * Sigma(0, half))
-    chord_cos = trace.let(f"{prefix}chord_cosine", cosine * turn_cos - sine * turn_sin)
-    chord_sin = trace.let(f"{prefix}chord_sine", sine * turn_cos + cosine * turn_sin)
-    return sp.Matrix([[chord_cos, -chord_sin], [chord_sin, chord_cos]])
+@cache
+def _along_chord(length: Any, half: Any, coordinates: tuple[sp.Symbol, ...]) -> tuple[Any, Any, Any]:
+    """A reach in axes along its chord, which stands at half the end's angle; derivatives by q and by q, q."""
+
+    def by(vector: sp.Matrix, q: sp.Symbol) -> sp.Matrix:
+        return jacobian(vector, [q]) + derivative(half, q) * perpendicular(vector)
+
+    whole = sp.Matrix([length * Sigma(0, half), 0])
+    by_q = [by(whole, q) for q in coordinates]
+    return whole, by_q, [[by(vector, q) for q in coordinates] for vector in by_q]
+
+
+def _chord_rotation(trace: Trace, prefix: str, half: Any) -> tuple[Any, Any]:
+    """Cosine and sine of the chord's angle in base axes: the near disk's and half the angle of the end."""
+    half_turn = Sigma(-1, half), trace.name(f"{prefix}half_sine", half * Sigma(0, half))
+    cosine, sine = rotate(NEAR_ROTATION, half_turn)
+    return trace.name(f"{prefix}chord_cosine", cosine), trace.name(f"{prefix}chord_sine", sine)
 
 
 def core_reaches(forces: SceneForces, trace: Trace | None = None) -> list[tuple[CorePointSymbols, Reach]]:
-    """Reaches to the points of the core that carry mass, of which a scene may have none."""
+    """The points of the core that carry mass, none in some scenes, each with its reach."""
     return [(point, reach_of(forces, trace, point)) for point in forces.core]

@@ -5,7 +5,7 @@ follow from them. With h = phi / 2 its far end is a chord at half the angle (Ron
 
     x = L sigma_0(h) cos h,   y = L sigma_0(h) sin h,   theta = phi
 
-A point of its core, a part s of the way along, is where the segment would end with s phi and s L.
+A point of its core at the fraction s of its length is where the segment would end with s phi and s L.
 """
 
 from collections.abc import Sequence
@@ -15,22 +15,11 @@ from typing import Any, NamedTuple
 import sympy as sp
 
 from statics.arm import CableKind
+from statics.derivation.frames import ACCELERATION, POSE, TWIST, norm, rotate, split
 from statics.derivation.sigma import Sigma
+from statics.derivation.trace import symbol
 from statics.errors import did_you_mean
 from statics.quantities import QUANTITIES
-
-STILL = sp.Float(1e-60)
-"""Speed (m/s, rad/s) so small that, added as a square, it changes no bit of one beyond 1e-50."""
-
-
-def symbol(name: str) -> sp.Symbol:
-    """The real symbol of that name."""
-    return sp.Symbol(name, real=True)
-
-
-def size(*components: Any) -> Any:
-    """Size of a vector. ``STILL`` keeps its derivatives finite where the vector is zero."""
-    return sp.sqrt(sum(component**2 for component in components) + STILL**2)
 
 
 def _parameter(name: str) -> sp.Symbol:
@@ -40,12 +29,12 @@ def _parameter(name: str) -> sp.Symbol:
 
 
 class CableSymbols(NamedTuple):
-    """One cable from hole to hole: its length (Eq. 23), its tension, and how far the holes are apart.
+    """One cable from hole to hole: its length (Eq. 23) and its tension.
 
-    ``tension`` is that at the base and ``tension_lost`` what friction has taken of it on the way; both are
-    zero where the cable does not pass: beyond its anchor, and between disks. ``gap`` is the length with a
-    sign: negative once the holes have passed each other. ``angle`` is the cable's against the near disk's
-    normal, ``far_angle`` against the far disk's.
+    ``passes`` is 1 where the cable passes, and 0 beyond its anchor and between disks. ``tension`` is that at
+    the base and ``tension_lost`` how much of it friction takes up to here; both are zero where the cable does
+    not pass. ``gap`` is the length with a sign: negative once the holes have passed each other. ``angle`` is
+    the cable's against the near disk's normal, ``far_angle`` against the far disk's.
     """
 
     number: int
@@ -60,7 +49,7 @@ class CableSymbols(NamedTuple):
 
 
 def _cable(number: int, kind: CableKind, length: Any, gap: Any, angle: Any, turn: Any) -> CableSymbols:
-    """A cable on a stretch whose far disk is turned by ``turn`` against the near one."""
+    """A cable between two disks, the far one rotated by ``turn`` against the near one."""
     passes = symbol(f"cable_passes_{number}")
     lost = passes * symbol(f"tension_lost_{number}") if kind.rubs else sp.Integer(0)
     tension = passes * symbol(f"tension_{number}")
@@ -74,7 +63,10 @@ def _hole_offsets(number: int, holes_differ: bool) -> tuple[sp.Symbol, sp.Symbol
 
 
 class SegmentSymbols:
-    """One segment: coordinates, rates, geometry; any other glossary name is a parameter of it."""
+    """One segment: coordinates, rates, geometry; any other glossary name is a parameter of it.
+
+    Raises ``AttributeError`` for a name that is not in the glossary.
+    """
 
     def __init__(
         self, coordinates: tuple[str, ...], cables: tuple[CableKind, ...], holes_differ: bool = False
@@ -96,7 +88,7 @@ class SegmentSymbols:
 
     @cached_property
     def half_angle(self) -> Any:
-        """H = phi / 2."""
+        """Half the bend angle, h = phi / 2, rad."""
         return self.bend_angle / 2
 
     @cached_property
@@ -126,7 +118,7 @@ class SegmentSymbols:
 
 
 class DrivenLoad(NamedTuple):
-    """A load on a disk that changes in time: a factor, and what it multiplies, the force in base axes."""
+    """A load on a disk that changes in time: a factor times a force, in base axes, and a moment."""
 
     factor: Any
     force: tuple[Any, Any]
@@ -134,22 +126,19 @@ class DrivenLoad(NamedTuple):
 
 
 class SpanSymbols:
-    """The core from one disk to the next where several segments make it: the poses of its two ends.
+    """The core from one disk to the next, where it has several segments: the poses of its two ends.
 
-    Ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with ``span_``; other
-    names are its parameters.
+    The span ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with
+    ``span_``; any other glossary name is a parameter of it.
     """
 
     def __init__(self, cables: tuple[CableKind, ...], holes_differ: bool = False) -> None:
         self.cable_kinds = cables
         self.holes_differ = holes_differ
-        self.coordinates = [symbol(f"{end}{name}") for end in ("", "span_") for name in ("x", "y", "theta")]
-        self.rates = [
-            symbol(f"{end}{name}")
-            for end in ("", "span_")
-            for name in ("velocity_x", "velocity_y", "angular_velocity")
-        ]
-        self.accelerations = [symbol(f"{coordinate}_acceleration") for coordinate in self.coordinates]
+        self.coordinates, self.rates, self.accelerations = (
+            [symbol(f"{end}{name}") for end in ("", "span_") for name in names]
+            for names in (POSE, TWIST, ACCELERATION)
+        )
 
     def __getattr__(self, name: str) -> sp.Symbol:
         return _parameter(name)
@@ -165,13 +154,13 @@ class SpanSymbols:
         along_x = x - span_x - far * sp.sin(theta) + near * sp.sin(span_theta)
         along_y = y - span_y + far * sp.cos(theta) - near * sp.cos(span_theta)
         mean = (theta + span_theta) / 2
-        cosine, sine = sp.cos(span_theta), sp.sin(span_theta)
+        seen_x, seen_y = rotate((sp.cos(span_theta), -sp.sin(span_theta)), (along_x, along_y))
         return _cable(
             number,
             kind,
             length=sp.sqrt(along_x**2 + along_y**2),
             gap=along_x * sp.cos(mean) + along_y * sp.sin(mean),
-            angle=sp.atan2(cosine * along_y - sine * along_x, cosine * along_x + sine * along_y),
+            angle=sp.atan2(seen_y, seen_x),
             turn=theta - span_theta,
         )
 
@@ -187,10 +176,11 @@ class MassSymbols(NamedTuple):
 
 
 class DiskSymbols:
-    """One disk, or a node between disks: pose, velocity, acceleration; other names are its parameters.
+    """One disk, or a node between disks: pose, velocity, acceleration, all in base axes.
 
-    ``payloads`` is the largest number of them on one disk. ``followers_among_driven`` says of every load that
-    changes in time whether it turns with its disk, ``has_followers`` whether another one does.
+    Any other glossary name is a parameter of it. ``payloads`` is the largest number of payloads on one disk;
+    ``followers_among_driven`` says of each load that changes in time whether it turns with its disk,
+    ``has_followers`` whether any constant load does.
     """
 
     def __init__(
@@ -199,23 +189,19 @@ class DiskSymbols:
         self.number_of_payloads = payloads
         self.followers_among_driven = followers_among_driven
         self.has_followers = has_followers
-        self.position = (symbol("x"), symbol("y"))
-        self.angle = symbol("theta")
-        self.velocity = (symbol("velocity_x"), symbol("velocity_y"))
-        self.angular_velocity = symbol("angular_velocity")
-        self.acceleration = (symbol("acceleration_x"), symbol("acceleration_y"))
-        self.angular_acceleration = symbol("angular_acceleration")
-        self.coordinates = [*self.position, self.angle]
-        self.rates = [*self.velocity, self.angular_velocity]
-        self.accelerations = [*self.acceleration, self.angular_acceleration]
+        self.coordinates, self.rates, self.accelerations = (
+            [symbol(name) for name in names] for names in (POSE, TWIST, ACCELERATION)
+        )
+        self.position, self.angle = split(self.coordinates)
+        self.velocity, self.angular_velocity = split(self.rates)
+        self.acceleration, self.angular_acceleration = split(self.accelerations)
 
     def __getattr__(self, name: str) -> sp.Symbol:
         return _parameter(name)
 
-    def turned(self, along: Any, across: Any) -> tuple[Any, Any]:
+    def rotated(self, along: Any, across: Any) -> tuple[Any, Any]:
         """A vector in base axes from its components along the core's tangent and the disk's y axis."""
-        cosine, sine = sp.cos(self.angle), sp.sin(self.angle)
-        return cosine * along - sine * across, sine * along + cosine * across
+        return rotate((sp.cos(self.angle), sp.sin(self.angle)), (along, across))
 
     @cached_property
     def driven_loads(self) -> list[DrivenLoad]:
@@ -226,7 +212,7 @@ class DiskSymbols:
         force = symbol(f"driven_force_x_{number}"), symbol(f"driven_force_y_{number}")
         return DrivenLoad(
             symbol(f"load_factor_{number}"),
-            self.turned(*force) if follows else force,
+            self.rotated(*force) if follows else force,
             symbol(f"driven_moment_{number}"),
         )
 
@@ -238,8 +224,8 @@ class DiskSymbols:
         return [own, *(self._payload(number) for number in range(1, self.number_of_payloads + 1))]
 
     def _payload(self, number: int) -> MassSymbols:
-        """A rigid body's centre d away: v + omega z x d, a + alpha z x d - omega^2 d."""
-        d_x, d_y = self.turned(symbol(f"payload_offset_x_{number}"), symbol(f"payload_offset_y_{number}"))
+        """A payload with its centre d from the disk's: v + omega z x d, a + alpha z x d - omega^2 d."""
+        d_x, d_y = self.rotated(symbol(f"payload_offset_x_{number}"), symbol(f"payload_offset_y_{number}"))
         (x, y), (v_x, v_y), (a_x, a_y) = self.position, self.velocity, self.acceleration
         omega, alpha = self.angular_velocity, self.angular_acceleration
         return MassSymbols(
@@ -252,19 +238,20 @@ class DiskSymbols:
 
     @property
     def speed(self) -> Any:
-        """|v|."""
-        return size(*self.velocity)
+        """The speed |v| of its centre, m/s."""
+        return norm(*self.velocity)
 
     @property
     def angular_speed(self) -> Any:
-        """|omega|."""
-        return size(self.angular_velocity)
+        """The angular speed |omega|, rad/s."""
+        return norm(self.angular_velocity)
 
 
 class CorePointSymbols:
     """One of the points along a segment that carry the core's own mass: position, velocity, acceleration.
 
-    ``fraction`` is its part of the way along. It turns with nothing: the core's rotary inertia is left out.
+    ``fraction`` is its distance along the core over the segment's length. It has no angle: the core's rotary
+    inertia is left out.
     """
 
     def __init__(self, number: int, fraction: float) -> None:
@@ -284,7 +271,7 @@ class CorePointSymbols:
 
     @cached_property
     def masses(self) -> list[MassSymbols]:
-        """The point's own, without extent."""
+        """The point's own mass, without extent."""
         own = MassSymbols(
             symbol("core_point_mass"), sp.Integer(0), self.position, self.velocity, self.acceleration
         )

@@ -17,11 +17,11 @@ import sympy as sp
 from sympy.core.function import ArgumentIndexError
 
 SERIES_TERMS = 11
-"""Terms of the power series used for |x| < 2; there they reach 5e-16."""
+"""Number of terms of the power series used for |x| < 2; there they reach 5e-16."""
 
 
 class Sigma(sp.Function):
-    """sigma_n(x) in sympy: ``Sigma(n, x)``, n >= -1, never written out."""
+    """Sigma function sigma_n(x) in sympy, ``Sigma(n, x)`` with n >= -1, never expanded."""
 
     nargs = 2
 
@@ -34,7 +34,7 @@ class Sigma(sp.Function):
 
 
 def series_coefficients(order: int) -> Sequence[float]:
-    """Coefficients of sigma_order in powers of x^2, lowest first. DLMF 10.53.1."""
+    """Coefficients of sigma_order in powers of x^2, lowest first, shape (SERIES_TERMS,). DLMF 10.53.1."""
     return [
         float(Fraction((-1) ** k, 2**k * factorial(k) * prod(range(1, 2 * (order + k) + 2, 2))))
         for k in range(SERIES_TERMS)
@@ -44,8 +44,8 @@ def series_coefficients(order: int) -> Sequence[float]:
 def ladder_source(order: int) -> str:
     """Python source of ``sigma_ladder_<order>(x)``, which returns sigma_{-1}, ..., sigma_order at once.
 
-    Below 2 the two highest by their series and the rest by the recurrence downwards, which is stable
-    there; beyond it upwards from sine and cosine.
+    For |x| < 2 it takes the two highest from their series and the rest by the recurrence downwards, which is
+    stable there; beyond, all upwards from sine and cosine. DLMF 10.51.1.
     """
     names = ["sigma_minus_1", *(f"sigma_{n}" for n in range(order + 1))]
     series = [f"        {names[n + 1]} = {_horner(series_coefficients(n))}" for n in (order, order - 1)]

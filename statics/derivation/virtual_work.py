@@ -2,8 +2,8 @@
 
     Q_i = sum_j P_j . dr_j/dq_i
 
-for one segment (q: its own coordinates) and for one disk (q: its pose). The chain puts them together,
-so that no whole-arm expression is ever formed.
+for one segment (q: its own coordinates) and for one disk (q: its pose). The passes along the chain put them
+together, so that no whole-arm expression is ever formed.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -20,24 +20,25 @@ from statics.derivation.segment import (
     SegmentSymbols,
     SpanSymbols,
 )
+from statics.derivation.trace import derivative, jacobian
 from statics.effects import Effect, Pair
 from statics.errors import InputError
 from statics.structure import Structure
 
 Groups = list[tuple[Effect, list[Pair]]]
-"""Effects, each with its pairs at one place."""
+"""Effects, each with its pairs at one site."""
 
 Symbols = SegmentSymbols | SpanSymbols | DiskSymbols | CorePointSymbols
-"""Symbols of one site, in which its pairs are written."""
+"""A site's symbols, in which its pairs are written."""
 
 
 @dataclass(frozen=True)
 class Forces:
-    """Generalized forces at one segment or disk, and the energies and powers behind them.
+    """Generalized forces at one site, and the energies (J) and powers (W) behind them, by account.
 
-    ``force`` has shape (coordinates, 1); ``mass``, ``damping`` and ``stiffness`` are its negative
-    derivatives by accelerations, rates and coordinates, as Newton's method takes them: damping without the
-    inertia forces, stiffness at rest, so that all are symmetric. ``energies`` and ``powers`` go by account.
+    ``force`` has shape (coordinates, 1), N for a length and N m for an angle; ``mass``, ``damping`` and
+    ``stiffness`` are its negative derivatives by accelerations, rates and coordinates, as Newton's method
+    takes them: damping without the inertia forces, stiffness at rest, so that all are symmetric.
     """
 
     force: sp.Matrix
@@ -48,14 +49,14 @@ class Forces:
     powers: dict[str, Any] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SceneForces:
-    """The forces of one segment, of one disk, and of one span, with the symbols that they are written in.
+    """Forces of one segment, of one disk, and of one span, with the symbols that they are written in.
 
     A span that is one segment has no forces of its own: they are the segment's. ``core`` are the points
     along a segment that carry its core's mass, ``on_core`` the forces on them. ``inputs`` are the names of
-    the numbers that drive the scene. ``conservative`` says that every load at rest has a potential; then
-    all matrices are symmetric.
+    the numbers that drive the scene. If ``conservative``, every load at rest has a potential, and all
+    matrices are symmetric. Compared by identity, so that steps can be kept by the forces they are made from.
     """
 
     conservative: bool
@@ -71,7 +72,7 @@ class SceneForces:
 
     @property
     def cables(self) -> list[CableSymbols]:
-        """The cables from disk to disk."""
+        """Cables from disk to disk."""
         return (self.span or self.segment).cables
 
     @property
@@ -80,12 +81,12 @@ class SceneForces:
         return [cable for cable in self.cables if cable.kind.coupled]
 
     @property
-    def places(self) -> dict[str, Forces]:
-        """Forces by where they act."""
-        places = {"segment": self.on_segment, "disk": self.on_disk}
+    def sites(self) -> dict[str, Forces]:
+        """Forces by the name of the site they act at."""
+        sites = {"segment": self.on_segment, "disk": self.on_disk}
         if self.on_span is not None:
-            places["span"] = self.on_span
-        return places | {point.name: part for point, part in zip(self.core, self.on_core, strict=True)}
+            sites["span"] = self.on_span
+        return sites | {point.name: part for point, part in zip(self.core, self.on_core, strict=True)}
 
 
 def dot(first: Any, second: Any) -> Any:
@@ -98,7 +99,7 @@ def dot(first: Any, second: Any) -> Any:
 def generalized_force(
     pairs: Iterable[Pair], partials: Callable[[Any, int], Any], coordinates: Sequence[sp.Symbol]
 ) -> sp.Matrix:
-    """Sum of P . partial_i(r) over the pairs, shape (coordinates, 1). Eq. 5."""
+    """Sum of P . partial_i(r) over the pairs, shape (coordinates, 1), N or N m. Rone 2012, Eq. 5."""
     total = sp.zeros(len(coordinates), 1)
     for load, displacement in pairs:
         for number in range(len(coordinates)):
@@ -107,10 +108,10 @@ def generalized_force(
 
 
 def partial_displacement(displacement: Any, coordinate: sp.Symbol) -> Any:
-    """dr/dq of a scalar or vector displacement. Eq. 3."""
+    """dr/dq of a scalar or vector displacement, with its shape. Rone 2012, Eq. 3."""
     if isinstance(displacement, Sequence):
-        return tuple(sp.diff(component, coordinate) for component in displacement)
-    return sp.diff(displacement, coordinate)
+        return tuple(derivative(component, coordinate) for component in displacement)
+    return derivative(displacement, coordinate)
 
 
 _OWN = sp.Dummy("r", real=True)
@@ -122,7 +123,7 @@ def _is_constant(load: Any, coordinates: Sequence[sp.Symbol]) -> bool:
 
 
 def has_potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> bool:
-    """Whether the load is constant, or its own displacement alone changes it; a follower load has none."""
+    """Whether the load is constant, or depends on its own displacement alone; a follower load does not."""
     load, displacement = pair
     if _is_constant(load, coordinates) or isinstance(displacement, Sequence):
         return _is_constant(load, coordinates)
@@ -130,7 +131,7 @@ def has_potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> bool:
 
 
 def have_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
-    """Whether every load that acts at rest has a potential; what dissipates never has one."""
+    """Whether every load that acts at rest has a potential; a dissipating effect never has one."""
     at_rest = [(effect, group) for effect, group in groups if effect.acts_at_rest]
     if any(group and effect.account == "dissipated_power" for effect, group in at_rest):
         return False
@@ -138,10 +139,10 @@ def have_potentials(groups: Groups, coordinates: Sequence[sp.Symbol]) -> bool:
 
 
 def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
-    """Energy V with P = -dV/dr: of a constant load, or of one that its own displacement alone changes.
+    """Energy V (J) with P = -dV/dr of a constant load, or of one that depends on its own displacement alone.
 
     A linear load's energy is zero where the load is, any other's where the displacement is. Raises
-    ``InputError`` for a load that something else changes.
+    ``InputError`` for a load that depends on anything else.
     """
     load, displacement = pair
     if not has_potential(pair, coordinates):
@@ -152,32 +153,35 @@ def potential(pair: Pair, coordinates: Sequence[sp.Symbol]) -> Any:
 
 
 def _stored(load: Any) -> Any:
-    """Energy of a load that ``_OWN`` changes."""
+    """Energy of a load that depends on ``_OWN``."""
     stiffness = -sp.diff(load, _OWN)
     if not stiffness.has(_OWN):
         return stiffness * sp.expand(load / stiffness) ** 2 / 2
     return -sp.integrate(load, (_OWN, 0, _OWN))
 
 
-def collect(effects: Iterable[Effect], places: Iterable[str], at: Any) -> Groups:
-    """The pairs of every effect at these places; a displacement that the scene does not have drops out."""
+def collect(effects: Iterable[Effect], kinds: Iterable[str], site: Any) -> Groups:
+    """Pairs of every effect at a site of these kinds, without displacements that the scene does not have."""
     return [
-        (effect, [pair for pair in effect.pairs(at) if pair.displacement != 0])
+        (effect, [pair for pair in effect.pairs(site) if pair.displacement != 0])
         for effect in effects
-        if effect.place in places
+        if effect.place in kinds
     ]
 
 
 def derive_statics(structure: Structure) -> SceneForces:
     """Forces of effects that act at rest, with their potentials, those of the loads included.
 
-    What has no potential, as a follower load, has no part in the energies.
+    A load without a potential, as a follower load, has no part in the energies.
     """
     return derive(structure, _at_rest)
 
 
 def derive(structure: Structure, forces_at: Callable[[Groups, Any], Forces]) -> SceneForces:
-    """The forces at a segment and at a disk; at a span and at points of the core, if the scene has them."""
+    """Forces at a segment and at a disk; at a span and at points of the core, if the scene has them.
+
+    ``forces_at`` makes a site's forces from the pairs there and the site's symbols.
+    """
     cables, holes_differ, effects = structure.cable_kinds, structure.holes_differ, structure.forms
     segment = SegmentSymbols(structure.coordinates, cables, holes_differ)
     disk = DiskSymbols(structure.payloads, structure.followers_among_driven, structure.has_followers)
@@ -189,10 +193,10 @@ def derive(structure: Structure, forces_at: Callable[[Groups, Any], Forces]) -> 
     on_core = [collect(effects, ("mass",), point) for point in core]
     if span is None:
         on_segment, on_span = on_segment + on_span, []
-    places = [(on_segment, segment), (on_disk, disk), (on_span, span or segment)]
-    places += zip(on_core, core, strict=True)
+    sites = [(on_segment, segment), (on_disk, disk), (on_span, span or segment)]
+    sites += zip(on_core, core, strict=True)
     return SceneForces(
-        all(have_potentials(groups, at.coordinates) for groups, at in places),
+        all(have_potentials(groups, site.coordinates) for groups, site in sites),
         structure.inputs,
         segment,
         disk,
@@ -205,14 +209,14 @@ def derive(structure: Structure, forces_at: Callable[[Groups, Any], Forces]) -> 
     )
 
 
-def _at_rest(groups: Groups, at: Symbols) -> Forces:
-    coordinates = at.coordinates
+def _at_rest(groups: Groups, site: Symbols) -> Forces:
+    coordinates = site.coordinates
     pairs = [pair for _, group in groups for pair in group]
     force = generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)
     none = sp.zeros(len(coordinates))
     with_potential = [group for group in groups if have_potentials([group], coordinates)]
     energies = by_account(with_potential, lambda pair: potential(pair, coordinates))
-    return Forces(force, none, none, -force.jacobian(coordinates), energies)
+    return Forces(force, none, none, -jacobian(force, coordinates), energies)
 
 
 def by_account(groups: Groups, amount: Callable[[Pair], Any]) -> dict[str, Any]:

@@ -64,7 +64,7 @@ class DiskLoads:
             Pair(at.load_moment, at.angle),
         ]
         if at.has_followers:
-            pairs.append(Pair(at.turned(at.follower_force_x, at.follower_force_y), at.position))
+            pairs.append(Pair(at.rotated(at.follower_force_x, at.follower_force_y), at.position))
         for factor, (force_x, force_y), moment in at.driven_loads:
             pairs.append(Pair((factor * force_x, factor * force_y), at.position))
             pairs.append(Pair(factor * moment, at.angle))
