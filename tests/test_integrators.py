@@ -10,9 +10,10 @@ from scipy.integrate import solve_ivp
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
-from continuum_dyn.integrators import ChainSolver, choose
+from continuum_dyn.integrators import choose
 from continuum_dyn.integrators.runge_kutta import start_records, step_once
-from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, SDIRK4, Tableau
+from continuum_dyn.integrators.scipy_solvers import ChainSolver
+from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau, dopri8
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
 from continuum_dyn.scenario.profiles import Sine, Step
@@ -104,7 +105,7 @@ def fixed_steps(
     [
         (ESDIRK5, 5, (28, 40, 56, 80, 112)),
         (SDIRK4, 4, (28, 40, 56, 80, 112)),
-        (DOPRI8, 8, (24, 28, 34, 40, 48)),
+        (dopri8(), 8, (24, 28, 34, 40, 48)),
     ],
     ids=lambda value: getattr(value, "name", ""),
 )

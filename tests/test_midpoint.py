@@ -24,8 +24,8 @@ from whole_arm import (
 
 from continuum_dyn import Scenario, Trajectory, load_scenario, modes, simulate
 from continuum_dyn.effects import MaterialDamping
-from continuum_dyn.integrators import MidpointSolver
 from continuum_dyn.integrators.midpoint import advance, momentum_passes
+from continuum_dyn.integrators.scipy_solvers import MidpointSolver
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import write_log

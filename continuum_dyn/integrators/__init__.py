@@ -1,19 +1,15 @@
 """Equations of motion and a state come in; states at the end of guarded steps go out."""
 
-from continuum_dyn.integrators.chain_solver import ChainSolver
 from continuum_dyn.integrators.choice import Choice, check, choose
 from continuum_dyn.integrators.guard import Budget, Guard, Monitor
 from continuum_dyn.integrators.methods import METHODS, Integrator
-from continuum_dyn.integrators.midpoint_solver import MidpointSolver
 
 __all__ = [
     "METHODS",
     "Budget",
-    "ChainSolver",
     "Choice",
     "Guard",
     "Integrator",
-    "MidpointSolver",
     "Monitor",
     "check",
     "choose",

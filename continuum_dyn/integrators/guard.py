@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
-from scipy.integrate import OdeSolver
 
 from continuum_dyn.scenario.solver import Solver
 from statics.outcome import Outcome
@@ -97,7 +96,11 @@ class Monitor:
         return True
 
 
-class Guard(OdeSolver):
+_SolverClass: Any = object
+"""A class that a guard stands before: one of SciPy's, or a ``Stepper``."""
+
+
+class Guard(_SolverClass):
     """Mixin before a solver class: the same steps, watched. Takes ``monitor`` as a solver option.
 
     A solver whose step is many may count them in ``internal_steps`` and ``internal_rejections``; it should

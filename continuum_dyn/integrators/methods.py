@@ -2,15 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
 from typing import Any
 
 import numpy as np
-from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, OdeSolver, Radau
 
-from continuum_dyn.integrators.chain_solver import ChainSolver
+from continuum_dyn.integrators.chain_stepper import ChainStepper
 from continuum_dyn.integrators.guard import Guard
-from continuum_dyn.integrators.midpoint_solver import MidpointSolver
-from continuum_dyn.integrators.tableau import DOPRI8, ESDIRK5, Tableau
+from continuum_dyn.integrators.midpoint_stepper import MidpointStepper
+from continuum_dyn.integrators.tableau import ESDIRK5, Tableau, dopri8
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Interval
 from continuum_dyn.scenario.solver import FIXED_STEP, Solver
@@ -26,15 +27,20 @@ Options = Callable[[Dynamics, Solver, Sequence[Interval]], dict[str, Any]]
 class Integrator:
     """A method of integration.
 
-    ``stepper`` is its class, with SciPy's interface and under a guard. A method ``on_chain`` has kernels of
-    its own, which work along the chain of segments; the others evaluate the right-hand side.
+    ``solver`` returns its class, with SciPy's interface. A method ``on_chain`` has kernels of its own, which
+    work along the chain of segments; the others evaluate the right-hand side.
     """
 
     name: str
-    stepper: Any
+    solver: Callable[[], type]
     options: Options
     implicit: bool = False
     on_chain: bool = False
+
+    @cached_property
+    def stepper(self) -> Any:
+        """The solver's class under a guard."""
+        return type(f"Guarded{self.name}", (Guard, self.solver()), {})
 
     @property
     def is_adaptive(self) -> bool:
@@ -67,44 +73,40 @@ def _first_step(dynamics: Dynamics, interval: Interval) -> float:
     return min(FIRST_STEP / max(dynamics.frequency, drive_frequency(interval)), interval.end - interval.start)
 
 
-def _chain_method(name: str, tableau: Tableau, implicit: bool) -> Integrator:
+def _chain_method(name: str, tableau: Callable[[], Tableau], implicit: bool) -> Integrator:
     def options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
         return {
             "dynamics": dynamics,
             "spans": intervals,
-            "tableau": tableau,
+            "tableau": tableau(),
             "tolerance": solver.tolerance(dynamics.scene.arm.total_length),
             "first_step": _first_step(dynamics, intervals[0]),
         }
 
-    return Integrator(name, _guard(ChainSolver), options, implicit, on_chain=True)
+    return Integrator(name, lambda: ChainStepper, options, implicit, on_chain=True)
 
 
 def _midpoint_options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
     return {"dynamics": dynamics, "span": intervals[0], "step": solver.step}
 
 
-def _scipy_method(method: type[OdeSolver], implicit: bool = False) -> Integrator:
+def _scipy_method(name: str, implicit: bool = False, module: str = "scipy.integrate") -> Integrator:
     def options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
         atol, first_step = solver.atol * dynamics.scales(), _first_step(dynamics, intervals[0])
         jacobian = {"jac": lambda t, y: dynamics.jacobian(t, y, intervals[0])} if implicit else {}
         return {"rtol": solver.rtol, "atol": atol, "first_step": first_step} | jacobian
 
-    return Integrator(method.__name__, _guard(method), options, implicit)
-
-
-def _guard(method: type[OdeSolver]) -> type[OdeSolver]:
-    return type(f"Guarded{method.__name__}", (Guard, method), {})
+    return Integrator(name, lambda: getattr(import_module(module), name), options, implicit)
 
 
 METHODS: dict[str, Integrator] = {
     method.name: method
     for method in (
-        _chain_method("chain", ESDIRK5, implicit=True),
-        _chain_method("explicit", DOPRI8, implicit=False),
-        Integrator("midpoint", _guard(MidpointSolver), _midpoint_options, implicit=True, on_chain=True),
-        *(_scipy_method(method) for method in (RK23, RK45, DOP853)),
-        *(_scipy_method(method, implicit=True) for method in (Radau, BDF, LSODA)),
+        _chain_method("chain", lambda: ESDIRK5, implicit=True),
+        _chain_method("explicit", dopri8, implicit=False),
+        Integrator("midpoint", lambda: MidpointStepper, _midpoint_options, implicit=True, on_chain=True),
+        *(_scipy_method(method) for method in ("RK23", "RK45", "DOP853")),
+        *(_scipy_method(method, implicit=True) for method in ("Radau", "BDF", "LSODA")),
     )
 }
 """Methods by the name that a scenario gives."""

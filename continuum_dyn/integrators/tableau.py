@@ -5,10 +5,9 @@ and are L-stable; an explicit one is the same with a zero there.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
-from scipy.integrate import DOP853
 
 
 @dataclass(frozen=True)
@@ -144,11 +143,15 @@ def _ends_in_weights(a: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return whole
 
 
-DOPRI8 = Tableau(
-    name="DOP853",
-    source="Hairer, Norsett and Wanner 1993, Solving ODEs I, sec. II.5; the coefficients are SciPy's",
-    order=6,
-    a=_ends_in_weights(DOP853.A, DOP853.B),
-    error_weights=DOP853.E5,
-)
-"""The method of order eight; its error estimate, by which steps are chosen, is that of order five."""
+@cache
+def dopri8() -> Tableau:
+    """The method of order eight; its error estimate, by which steps are chosen, is that of order five."""
+    from scipy.integrate import DOP853
+
+    return Tableau(
+        name="DOP853",
+        source="Hairer, Norsett and Wanner 1993, Solving ODEs I, sec. II.5; the coefficients are SciPy's",
+        order=6,
+        a=_ends_in_weights(DOP853.A, DOP853.B),
+        error_weights=DOP853.E5,
+    )

@@ -7,6 +7,7 @@ an array (coordinates, inputs, parameters), or was computed by an earlier pass; 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from typing import Any
 
 import sympy as sp
@@ -170,7 +171,8 @@ def _assignments(lines: list[Any], called: dict[str, str]) -> list[str]:
         names = {n: f"sigma_{'minus_1' if n == -1 else n}{suffix}" for n in range(-1, order + 1)}
         text.append(f"{', '.join(names.values())} = sigma_ladder_{order}({_code(argument)})")
         known |= {call: symbol(names[int(call.args[0])]) for call in calls}
-    for symbols, value in _without_repetition([(s, value.xreplace(known)) for s, value in lines]):
+    named = tuple((s, value.xreplace(known)) for s, value in lines)
+    for symbols, value in _without_repetition(named):
         called |= {name: PIVOT_SOURCES[name] for name in _called(value)}
         text.append(f"{', '.join(map(str, symbols))} = {_code(value)}")
     return text
@@ -185,7 +187,8 @@ def _calls_by_argument(lines: list[Any]) -> list[tuple[Any, set[Any]]]:
     return sorted(calls.items(), key=lambda item: str(item[0]))
 
 
-def _without_repetition(lines: list[Any]) -> list[Any]:
+@cache
+def _without_repetition(lines: tuple[Any, ...]) -> list[Any]:
     """Common subexpressions named once, each just before its first use."""
     replacements, reduced = sp.cse([value for _, value in lines], order="none")
     pending = dict(replacements)
@@ -237,5 +240,9 @@ class _Printer(PythonCodePrinter):
         return f"min({', '.join(map(self._print, expression.args))})"
 
 
+_PRINTER = _Printer()
+
+
+@lru_cache(maxsize=None, typed=True)
 def _code(value: Any) -> str:
-    return _Printer().doprint(sp.sympify(value))
+    return _PRINTER.doprint(sp.sympify(value))

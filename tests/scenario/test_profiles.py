@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from continuum_dyn import Scenario, simulate
-from continuum_dyn.integrators import METHODS, ChainSolver
+from continuum_dyn.integrators import METHODS
+from continuum_dyn.integrators.chain_stepper import ChainStepper
 from continuum_dyn.scenario.intervals import cut_into_intervals, join_intervals
 from continuum_dyn.scenario.profiles import (
     TIME_RESOLUTION,
@@ -101,7 +102,7 @@ def test_no_step_crosses_a_corner(monkeypatch: pytest.MonkeyPatch, method: Metho
     def noted(solver: object) -> object:
         message = plain_step(solver)  # pyright: ignore[reportArgumentType]
         ends = np.array([solver.t_old, solver.t])  # pyright: ignore[reportAttributeAccessIssue]
-        if isinstance(solver, ChainSolver):
+        if isinstance(solver, ChainStepper):
             ends = solver.records[0][: solver.internal_steps + 1]
         taken.extend(pairwise(ends.tolist()))
         return message

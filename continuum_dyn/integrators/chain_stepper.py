@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.integrators import runge_kutta
 from continuum_dyn.integrators.runge_kutta import FINISHED, MOST_GROWTH, NO_ROOM, TOO_SMALL
+from continuum_dyn.integrators.stepper import Interpolant, Stepper
 from continuum_dyn.integrators.tableau import ESDIRK5, SDIRK4, Tableau
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Interval
@@ -27,15 +27,14 @@ SAME_SLOPE = 1e-9
 """Relative difference below which two slopes of an input are one."""
 
 
-class ChainSolver(OdeSolver):
-    """ESDIRK on the chain, O(n) a stage, error in metres: for ``solve_ivp(..., method=ChainSolver)``.
+class ChainStepper(Stepper):
+    """ESDIRK on the chain, O(n) a stage, error in metres.
 
     Options: ``dynamics`` and ``spans``, whose right-hand side this is (``fun`` is not called), one after the
     other without a jump of accelerations; ``tolerance``, the largest displacement (m) of any disk by the
-    error of one step; ``first_step`` (s), at most; ``tableau``. ``internal_steps`` and
-    ``internal_rejections`` count those of the last call, which takes no more than ``steps_left``, and
-    ``internal_times`` (s) are where they begin and end. Where nodes carry no mass the start's accelerations
-    are not known; a first step by ``SDIRK4``, which does not ask for them, ends in some that fit.
+    error of one step; ``first_step`` (s), at most; ``tableau``. ``internal_times`` (s) are where internal
+    steps begin and end. Where nodes carry no mass the start's accelerations are not known; a first step by
+    ``SDIRK4``, which does not ask for them, ends in some that fit.
     """
 
     steps_left = BATCH
@@ -54,7 +53,7 @@ class ChainSolver(OdeSolver):
         first_step: float,
         tableau: Tableau = ESDIRK5,
     ) -> None:
-        super().__init__(fun, t0, y0, t_bound, vectorized)
+        super().__init__(t0, y0, t_bound)
         self.kernel, segments, disks = dynamics.motion
         self.tables = segments, disks
         self.spans, self.span = spans, 0
@@ -79,7 +78,6 @@ class ChainSolver(OdeSolver):
         elif push > 0.0:
             self.next_step = min(first_step, np.sqrt(2.0 * FIRST_PART * tolerance / push))
         self.rate = 0.1
-        self.internal_steps = self.internal_rejections = 0
 
     @property
     def _arm(self) -> tuple[np.ndarray, ...]:
@@ -140,23 +138,26 @@ class ChainSolver(OdeSolver):
         self.nlu += iterations
         return taken, ended
 
-    def _dense_output_impl(self) -> DenseOutput:
+    def dense_output(self) -> Interpolant:
+        """The state at every time within the last step."""
         rows = slice(0, self.internal_steps + 1)
         return ChainInterpolant(tuple(column[rows].copy() for column in self.records))
 
 
-class ChainInterpolant(DenseOutput):
+class ChainInterpolant(Interpolant):
     """The state within a batch of steps: quintic Hermite polynomials of the coordinates."""
 
     def __init__(self, records: tuple[np.ndarray, ...]) -> None:
         super().__init__(float(records[0][0]), float(records[0][-1]))
         self.records = records
 
-    def _call_impl(self, t: np.ndarray) -> np.ndarray:
-        at = np.atleast_1d(t)
-        order = np.argsort(at, kind="stable")
-        states = np.empty((at.size, self.records[1].shape[1]))
-        runge_kutta.interpolate(at[order], self.records, 0, states)
-        if (np.diff(order) != 1).any():
-            states[order] = states.copy()
-        return states[0] if np.ndim(t) == 0 else states.T
+    @property
+    def size(self) -> int:
+        """Size of a state."""
+        return self.records[1].shape[1]
+
+    def states(self, times: np.ndarray) -> np.ndarray:
+        """The states at increasing times (s), shape (times, size)."""
+        found = np.empty((times.size, self.size))
+        runge_kutta.interpolate(times, self.records, 0, found)
+        return found

@@ -4,9 +4,9 @@ import math
 from typing import Any
 
 import numpy as np
-from scipy.integrate import DenseOutput, OdeSolver
 
 from continuum_dyn.integrators import midpoint
+from continuum_dyn.integrators.stepper import Interpolant, Stepper
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Interval
 
@@ -17,12 +17,11 @@ ROUNDING = 1e-17
 """Largest displacement of a disk in a step's last iteration, over the arm's length."""
 
 
-class MidpointSolver(OdeSolver):
-    """Variational midpoint rule for a scene without dissipation: ``solve_ivp(..., method=MidpointSolver)``.
+class MidpointStepper(Stepper):
+    """Variational midpoint rule for a scene without dissipation.
 
     Options: ``dynamics`` and ``span``, whose right-hand side this is (``fun`` is not called); ``step`` (s),
-    at most: the time to ``t_bound`` is cut into equal ones. ``internal_steps`` counts those of the last
-    call, which takes no more than ``steps_left``.
+    at most: the time to ``t_bound`` is cut into equal ones.
     """
 
     steps_left = BATCH
@@ -39,7 +38,7 @@ class MidpointSolver(OdeSolver):
         span: Interval,
         step: float,
     ) -> None:
-        super().__init__(fun, t0, y0, t_bound, vectorized)
+        super().__init__(t0, y0, t_bound)
         self.kernel, segments, disks = dynamics.midpoint
         self.arm = (span.pieces, segments, disks)
         self.allowed = ROUNDING * dynamics.scene.arm.total_length
@@ -51,7 +50,6 @@ class MidpointSolver(OdeSolver):
         self.records[0][0], self.records[2][0] = q, y0[-2]
         midpoint.start_momenta(self.kernel.passes, t0, q, u, self.arm, self.records[1][0])
         self.past = np.tile(u, (midpoint.PAST, 1, 1))
-        self.internal_steps = 0
 
     def _time(self, taken: int) -> float:
         return self.start + taken * self.size
@@ -72,17 +70,18 @@ class MidpointSolver(OdeSolver):
         if taken == 0:
             return False, f"no solution found for a step of {self.size:.3g} s; try a smaller [solver] step"
         self.t = self.t_bound if self.taken == self.steps else self._time(self.taken)
-        self.y = self._dense_output_impl()(self.t)
+        self.y = self.dense_output()(self.t)
         return True, None
 
-    def _dense_output_impl(self) -> "MidpointInterpolant":
+    def dense_output(self) -> Interpolant:
+        """The state at every time within the last step."""
         rows = slice(0, self.internal_steps + 1)
         records = tuple(column[rows].copy() for column in self.records)
         start = self._time(self.taken - self.internal_steps)
         return MidpointInterpolant(self.kernel, start, self.size, records, self.allowed, self.arm)
 
 
-class MidpointInterpolant(DenseOutput):
+class MidpointInterpolant(Interpolant):
     """The state within a batch of steps: by a shorter step of the same rule."""
 
     def __init__(
@@ -96,14 +95,16 @@ class MidpointInterpolant(DenseOutput):
     ) -> None:
         super().__init__(start, start + (len(records[0]) - 1) * size)
         self.kernel, self.records = kernel, records
-        self.size, self.allowed, self.arm = size, allowed, arm
+        self.step, self.allowed, self.arm = size, allowed, arm
 
-    def _call_impl(self, t: np.ndarray) -> np.ndarray:
-        at = np.atleast_1d(np.asarray(t, dtype=float))
-        order = np.argsort(at, kind="stable")
-        found = np.empty((at.size, 2 * self.records[0][0].size + 2))
-        arguments = (self.t_old, self.size, self.records, self.allowed, self.arm)
-        midpoint.sample(self.kernel.passes, at[order], *arguments, found)
-        states = np.empty_like(found)
-        states[order] = found
-        return states[0] if np.ndim(t) == 0 else states.T
+    @property
+    def size(self) -> int:
+        """Size of a state."""
+        return 2 * self.records[0][0].size + 2
+
+    def states(self, times: np.ndarray) -> np.ndarray:
+        """The states at increasing times (s), shape (times, size)."""
+        found = np.empty((times.size, self.size))
+        arguments = (self.t_old, self.step, self.records, self.allowed, self.arm)
+        midpoint.sample(self.kernel.passes, times, *arguments, found)
+        return found
