@@ -39,6 +39,7 @@ contracts: $(VENV)/dev
 benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 	$(BIN)/python benchmarks/equilibria.py
 	$(BIN)/python benchmarks/newton_iteration.py
+	$(BIN)/python benchmarks/lanes.py
 	$(BIN)/python benchmarks/integrators.py
 	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/start_up.py

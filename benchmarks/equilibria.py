@@ -8,7 +8,6 @@ import statistics
 import time
 
 import numpy as np
-from numba import njit
 
 from statics import (
     RONE2012_HOLE_OFFSET,
@@ -21,8 +20,10 @@ from statics import (
     Scene,
     StaticSolver,
 )
+from statics.kernels.compiled import compiled
 from statics.passes.newton import find_stable
 from statics.passes.rest_passes import RestPasses
+from statics.passes.search import clear
 
 DISKS = (4, 16, 64, 256, 1024)
 REPEATS = 9
@@ -48,7 +49,7 @@ def scene(disks: int) -> Scene:
     return Scene(arm, (Bending(), Extension(), Gravity(), Cables()))
 
 
-@njit
+@compiled
 def chained_multiply_adds(count: int, factor: float) -> float:
     """A fixed amount of arithmetic, to measure the machine by."""
     total = 1.0
@@ -57,26 +58,34 @@ def chained_multiply_adds(count: int, factor: float) -> float:
     return total
 
 
+@compiled
+def repeat_solution(
+    times: int,
+    passes: RestPasses,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    unit: float,
+) -> int:
+    """Solve from straight so many times; the Newton iterations of the last."""
+    iterations = 0
+    for _ in range(times):
+        clear(q)
+        iterations = find_stable(passes, q, inputs, segments, disks, unit, 200)[1]
+    return iterations
+
+
 def seconds_per_solution(disks: int) -> tuple[float, int]:
     """Median time of a solution from straight at 2 N, and its Newton iterations."""
     solver = StaticSolver(scene(disks))
-    passes, segments, loads = solver.kernel.passes, solver.segments, solver.disks
-    q, tension, unit = np.zeros((disks, 2)), np.array([2.0]), solver.scene.arm.rest_length
-
-    @njit
-    def many(passes: RestPasses, q: np.ndarray, count: int) -> int:
-        iterations = 0
-        for _ in range(count):
-            q[:] = 0.0
-            iterations = find_stable(passes, q, tension, segments, loads, unit, 200)[1]
-        return iterations
-
-    count = max(1, WORK // disks)
-    iterations = many(passes, q, 1)
+    tables = np.array([2.0]), solver.segments, solver.disks, solver.scene.arm.rest_length
+    q, count = np.zeros((disks, 2)), max(1, WORK // disks)
+    iterations = repeat_solution(1, solver.kernel.passes, q, *tables)
     times = []
     for _ in range(REPEATS):
         started = time.perf_counter()
-        many(passes, q, count)
+        repeat_solution(count, solver.kernel.passes, q, *tables)
         times.append((time.perf_counter() - started) / count)
     return statistics.median(times), iterations
 

@@ -5,45 +5,31 @@ wait for nothing but themselves. Reported pass by pass; asserted: the whole, as 
 """
 
 import ast
-import time
-from collections.abc import Callable
 
 import numpy as np
-from numba import njit
+from iterations import Iteration, nanoseconds
 from scaling import SCENARIO, cut
 
 from continuum_dyn import load_scenario
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation import Motion
-from statics.kernels.calling import run
+from statics.kernels.compiled import compiled
 from statics.kernels.loading import Kernel
-from statics.kernels.slots import DAMPING_WEIGHT, SCALARS, STIFFNESS_WEIGHT
 
 SEGMENTS = 64
-CALLS, REPEATS = 4000, 15
+CALLS = 4000
 AT_MOST = 2.5
 """Times the loop of multiply-adds: what a wait for angles, pivots and memory may cost."""
 
 
-@njit
+@compiled
 def multiply_adds(count: int, x: np.ndarray) -> None:
     """``count`` times eight multiply-adds."""
-    a, b, c, d, e, f, g, h = x
+    a, b, c, d, e, f, g, h = x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]
     for _ in range(count):
         a, b, c, d = a * 0.9 + 1.0, b * 0.9 + 1.0, c * 0.9 + 1.0, d * 0.9 + 1.0
         e, f, g, h = e * 0.9 + 1.0, f * 0.9 + 1.0, g * 0.9 + 1.0, h * 0.9 + 1.0
-    x[:] = a, b, c, d, e, f, g, h
-
-
-def nanoseconds(work: Callable[[], None]) -> float:
-    """Shortest time of some repeats."""
-    times = []
-    work()
-    for _ in range(REPEATS):
-        started = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - started)
-    return 1e9 * min(times)
+    x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7] = a, b, c, d, e, f, g, h
 
 
 def operations(kernel: Kernel) -> dict[str, int]:
@@ -52,56 +38,6 @@ def operations(kernel: Kernel) -> dict[str, int]:
         node.name.removesuffix("_step"): sum(isinstance(part, ast.BinOp) for part in ast.walk(node))
         for node in kernel.tree.body
         if isinstance(node, ast.FunctionDef) and node.name.endswith(("_step", "_1", "_2"))
-    }
-
-
-@njit
-def motions(address, n, scalars, q, u, w, inputs, segments, disks, chain):
-    """Repeat the outward pass."""
-    for _ in range(CALLS):
-        run(address, n, scalars, q, u, w, inputs, segments, disks, chain)
-
-
-@njit
-def residuals(address, n, scalars, disks, chain, residual):
-    """Repeat the residual pass."""
-    for _ in range(CALLS):
-        run(address, n, scalars, disks, chain, residual)
-
-
-@njit
-def eliminations(address, n, scalars, segments, disks, chain, residual, descent):
-    """Repeat the elimination."""
-    for _ in range(CALLS):
-        run(address, n, scalars, segments, disks, chain, residual, descent, descent)
-
-
-@njit
-def substitutions(address, n, scalars, chain, descent, change):
-    """Repeat the substitution."""
-    for _ in range(CALLS):
-        run(address, n, scalars, chain, descent, change)
-
-
-def passes_of(motion: Motion) -> dict[str, Callable[[], None]]:
-    """The passes of one iteration, each called many times from compiled code."""
-    kernel, segments, disks = motion.dynamics.motion
-    shape = (SEGMENTS, motion.dynamics.dofs)
-    q = motion.start[: motion.dynamics.size].reshape(shape).copy()
-    q[:, 0] += 1.0 / SEGMENTS
-    u, w = np.full(shape, 0.1), np.zeros(shape)
-    chain, tension = np.empty((SEGMENTS, kernel.widths["chain"])), np.array([1.0])
-    residual, descent, change = np.empty(shape), np.empty(shape), np.empty(shape)
-    scalars, passes = np.zeros(SCALARS), kernel.passes
-    scalars[DAMPING_WEIGHT], scalars[STIFFNESS_WEIGHT] = 1e-3, 1e-6
-    common = (SEGMENTS, scalars)
-    return {
-        "motion": lambda: motions(passes.motion, *common, q, u, w, tension, segments, disks, chain),
-        "residual": lambda: residuals(passes.residual, *common, disks, chain, residual),
-        "eliminate": lambda: eliminations(
-            passes.eliminate, *common, segments, disks, chain, residual, descent
-        ),
-        "substitute": lambda: substitutions(passes.substitute, *common, chain, descent, change),
     }
 
 
@@ -115,8 +51,7 @@ def main() -> None:
         ladder = max(count for name, count in counted.items() if name.startswith("sigma_ladder"))
         print(f"{'with' if extension else 'without'} extension, per segment")
         whole, all_operations = 0.0, 0
-        for name, work in passes_of(motion).items():
-            spent = nanoseconds(work) / CALLS / SEGMENTS
+        for name, spent in Iteration(motion).spent(CALLS).items():
             done = counted[name] + (ladder if name == "motion" else 0)
             whole, all_operations = whole + spent, all_operations + done
             print(f"  {name:11s} {spent:5.1f} ns  {done:4d} operations")
