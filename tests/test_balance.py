@@ -6,6 +6,7 @@ from conftest import rone2012
 
 from statics import Outcome, Scene, StaticSolver
 from statics.derivation import virtual_work
+from statics.kernels import loading
 from statics.kernels.loading import Kernel, load
 from statics.passes import search
 from statics.passes.pseudo_transient import find_balance
@@ -18,6 +19,7 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Kernel:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(virtual_work, "have_potentials", lambda _groups, _coordinates: False)
         patch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path_factory.mktemp("kernels") / "apart"))
+        patch.setattr(loading, "_loaded", {})
         kernel = load(rone2012().structure, REST)
     assert "negative_pivots" not in kernel.text
     assert not kernel.conservative

@@ -3,6 +3,11 @@
 The potential energy must fall (Armijo); pivot blocks are made positive as they come, so that every step
 descends. At a saddle the search stops, so that it can be reported, and goes on along the direction of
 negative curvature that the elimination knows. A trial beyond a geometric limit counts as infinitely high.
+
+Arguments travel in groups:
+
+- ``arm``: inputs, segment table, disk table;
+- ``work``: chain; residual, descent, change, trial, shape of q; pivots; scalars.
 """
 
 import math
@@ -40,6 +45,9 @@ from statics.passes.search import (
     pose_pass,
 )
 
+Arm = tuple[np.ndarray, np.ndarray, np.ndarray]
+Work = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
 ROUNDING = 1e-11
 """Smallest predicted fall of the potential, over its scale, that can be seen in it."""
 FAR_FROM_REST = 1e-6
@@ -49,47 +57,39 @@ matrix is singular there."""
 
 @compiled
 def eliminate(
-    passes: RestPasses,
-    keep_sign: float,
-    segments: np.ndarray,
-    disks: np.ndarray,
-    chain: np.ndarray,
-    residual: np.ndarray,
-    descent: np.ndarray,
-    pivots: np.ndarray,
-    scalars: np.ndarray,
+    passes: RestPasses, keep_sign: float, segments: np.ndarray, disks: np.ndarray, work: Work
 ) -> int:
     """Eliminate every segment from H dq = -residual; returns the number of negative pivots.
 
     With ``keep_sign`` 1 pivots stay as they are, and those are the negative eigenvalues of the matrix; with 0
     they are made positive.
     """
+    chain, residual, descent, _, _, pivots, scalars = work
     scalars[KEEP_SIGN] = keep_sign
     run(passes.eliminate, residual.shape[0], scalars, segments, disks, chain, residual, descent, pivots)
     return int(scalars[NEGATIVE_PIVOTS])
 
 
 @compiled
-def descend(
-    passes: RestPasses,
-    segments: np.ndarray,
-    disks: np.ndarray,
-    chain: np.ndarray,
-    residual: np.ndarray,
-    descent: np.ndarray,
-    pivots: np.ndarray,
-    scalars: np.ndarray,
-) -> int:
+def descend(passes: RestPasses, arm: Arm, work: Work) -> int:
     """Eliminate so that the step descends, exactly where it does so by itself; returns the negative pivots.
 
     Cables of given length may hold what is unstable without them: then pivots are negative, the matrix not.
     """
-    negative = eliminate(passes, 0.0, segments, disks, chain, residual, descent, pivots, scalars)
+    _, segments, disks = arm
+    negative = eliminate(passes, 0.0, segments, disks, work)
     if passes.lengths != 0 and negative > 0:
-        if eliminate(passes, 1.0, segments, disks, chain, residual, descent, pivots, scalars) == 0:
+        if eliminate(passes, 1.0, segments, disks, work) == 0:
             return 0
-        eliminate(passes, 0.0, segments, disks, chain, residual, descent, pivots, scalars)
+        eliminate(passes, 0.0, segments, disks, work)
     return negative
+
+
+@compiled
+def substitute(passes: RestPasses, work: Work) -> None:
+    """Set ``change`` from what the elimination left."""
+    chain, _, descent, change, _, _, scalars = work
+    run(passes.substitute, change.shape[0], scalars, chain, descent, change)
 
 
 @compiled
@@ -103,19 +103,12 @@ def inner(first: np.ndarray, second: np.ndarray) -> float:
 
 
 @compiled
-def saddle_direction(
-    passes: RestPasses,
-    unit: float,
-    chain: np.ndarray,
-    pivots: np.ndarray,
-    descent: np.ndarray,
-    change: np.ndarray,
-    scalars: np.ndarray,
-) -> float:
-    """Into ``change`` a direction of negative curvature, at most 0.1 rad; returns its curvature.
+def saddle_direction(passes: RestPasses, unit: float, work: Work) -> float:
+    """Set ``change`` to a direction of negative curvature, at most 0.1 rad; returns its curvature.
 
     The negative pivot nearest to the tip gives its own eigenvector; substitution gives what follows.
     """
+    _, _, descent, change, _, pivots, _ = work
     clear(descent)
     curvature = 0.0
     for i in range(descent.shape[0] - 1, -1, -1):
@@ -131,7 +124,7 @@ def saddle_direction(
                 descent[i, 0], descent[i, 1] = -math.sin(turn), math.cos(turn) * unit
                 curvature = low
                 break
-    run(passes.substitute, change.shape[0], scalars, chain, descent, change)
+    substitute(passes, work)
     shrink = 0.1 / max(measure(change, unit)[1], 1e-30)
     for i in range(change.shape[0]):
         for k in range(change.shape[1]):
@@ -140,21 +133,24 @@ def saddle_direction(
 
 
 @compiled
+def attempt(passes: RestPasses, q: np.ndarray, factor: float, arm: Arm, work: Work) -> None:
+    """Set ``trial`` to q + factor * change; ``scalars`` hold its potential and clearance."""
+    chain, _, _, change, trial, _, scalars = work
+    add_scaled(q, factor, change, trial)
+    pose_pass(passes, trial, arm[0], arm[1], arm[2], chain, scalars)
+
+
+@compiled
 def shorten(
     passes: RestPasses,
     q: np.ndarray,
-    change: np.ndarray,
     factor: float,
     enough: float,
     slope: float,
     curvature: float,
     clearance: float,
-    inputs: np.ndarray,
-    segments: np.ndarray,
-    disks: np.ndarray,
-    chain: np.ndarray,
-    trial: np.ndarray,
-    scalars: np.ndarray,
+    arm: Arm,
+    work: Work,
 ) -> float:
     """Halve the step until the potential falls enough (Armijo) and no geometric limit comes too close.
 
@@ -162,9 +158,9 @@ def shorten(
     ``clearance`` at q a part must be left. Returns the factor, 0 if there is none; ``trial`` is the accepted
     q, ``scalars`` hold its potential and clearance.
     """
+    scalars = work[6]
     for _ in range(60):
-        add_scaled(q, factor, change, trial)
-        pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
+        attempt(passes, q, factor, arm, work)
         fall = 1e-4 * (factor * slope + 0.5 * factor * factor * curvature)
         if scalars[CLEARANCE] > TOWARDS_LIMIT * clearance and scalars[POTENTIAL] <= enough + fall:
             return factor
@@ -173,29 +169,16 @@ def shorten(
 
 
 @compiled
-def lengthen(
-    passes: RestPasses,
-    q: np.ndarray,
-    change: np.ndarray,
-    factor: float,
-    longest: float,
-    inputs: np.ndarray,
-    segments: np.ndarray,
-    disks: np.ndarray,
-    chain: np.ndarray,
-    trial: np.ndarray,
-    scalars: np.ndarray,
-) -> None:
+def lengthen(passes: RestPasses, q: np.ndarray, factor: float, longest: float, arm: Arm, work: Work) -> None:
     """Double an accepted step while that lowers the potential: an indefinite matrix says little of length."""
+    scalars = work[6]
     potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
     while 2.0 * factor <= longest:
-        add_scaled(q, 2.0 * factor, change, trial)
-        pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
+        attempt(passes, q, 2.0 * factor, arm, work)
         if scalars[CLEARANCE] <= TOWARDS_LIMIT * clearance or scalars[POTENTIAL] >= potential:
             break
         factor, potential, clearance = 2.0 * factor, scalars[POTENTIAL], scalars[CLEARANCE]
-    add_scaled(q, factor, change, trial)
-    pose_pass(passes, trial, inputs, segments, disks, chain, scalars)
+    attempt(passes, q, factor, arm, work)
 
 
 @compiled
@@ -217,40 +200,22 @@ def leave_saddle(
         np.empty((n, passes.pivot_columns)),
         np.empty(SCALARS),
     )
-    residual, descent, change, trial = (
-        np.empty((n, dofs)),
-        np.empty((n, dofs)),
-        np.empty((n, dofs)),
-        np.empty((n, dofs)),
-    )
+    rows = np.empty((4, n, dofs))
+    residual, change, trial = rows[0], rows[2], rows[3]
+    arm, work = (inputs, segments, disks), (chain, residual, rows[1], change, trial, pivots, scalars)
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
     run(passes.residual, n, scalars, disks, chain, residual)
-    descend(passes, segments, disks, chain, residual, descent, pivots, scalars)
-    curvature = saddle_direction(passes, unit, chain, pivots, descent, change, scalars)
+    descend(passes, arm, work)
+    curvature = saddle_direction(passes, unit, work)
     slope = inner(residual, change)
     if slope > 0.0:
         add_scaled(change, -2.0, change, change)
         slope = -slope
-    factor = shorten(
-        passes,
-        q,
-        change,
-        1.0,
-        potential,
-        slope,
-        curvature,
-        clearance,
-        inputs,
-        segments,
-        disks,
-        chain,
-        trial,
-        scalars,
-    )
+    factor = shorten(passes, q, 1.0, potential, slope, curvature, clearance, arm, work)
     if factor == 0.0:
         return False
-    lengthen(passes, q, change, factor, 10.0 * LARGEST_TURN, inputs, segments, disks, chain, trial, scalars)
+    lengthen(passes, q, factor, 10.0 * LARGEST_TURN, arm, work)
     copy(trial, q)
     return True
 
@@ -276,61 +241,48 @@ def find_stable(
         np.empty((n, passes.pivot_columns)),
         np.empty(SCALARS),
     )
-    residual, descent, change, trial = (
-        np.empty((n, dofs)),
-        np.empty((n, dofs)),
-        np.empty((n, dofs)),
-        np.empty((n, dofs)),
-    )
-    coupled = passes.lengths != 0
+    rows = np.empty((4, n, dofs))
+    residual, change, trial = rows[0], rows[2], rows[3]
+    arm, work = (inputs, segments, disks), (chain, residual, rows[1], change, trial, pivots, scalars)
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     single = math.inf
     for iteration in range(1, most + 1):
         potential, scale, clearance = scalars[POTENTIAL], scalars[POTENTIAL_SCALE], scalars[CLEARANCE]
         run(passes.residual, n, scalars, disks, chain, residual)
-        negative = descend(passes, segments, disks, chain, residual, descent, pivots, scalars)
-        run(passes.substitute, n, scalars, chain, descent, change)
+        negative = descend(passes, arm, work)
+        substitute(passes, work)
         last = single
         single, turn = measure(change, unit)
-        if single < AT_REST and not (coupled and single < FALLING * last):  # cables may catch in a small step
-            if negative == 0:
-                add_scaled(q, 1.0, change, q)
-                return STABLE, iteration
-            eliminate(passes, 1.0, segments, disks, chain, residual, descent, pivots, scalars)
-            run(passes.substitute, n, scalars, chain, descent, change)
-            if measure(change, unit)[0] < FAR_FROM_REST:
-                add_scaled(q, 1.0, change, q)
-            return UNSTABLE, iteration
+        # Cables of given length may catch in a small step.
+        if single < AT_REST and not (passes.lengths != 0 and single < FALLING * last):
+            return settle(passes, q, negative, unit, arm, work), iteration
         slope, enough = inner(residual, change), potential
         if slope > -ROUNDING * scale:
             enough = potential + scale  # the fall is below rounding: only the limits are checked
         longest = LARGEST_TURN / max(turn, 1e-30)
-        factor = shorten(
-            passes,
-            q,
-            change,
-            min(1.0, longest),
-            enough,
-            slope,
-            0.0,
-            clearance,
-            inputs,
-            segments,
-            disks,
-            chain,
-            trial,
-            scalars,
-        )
+        factor = shorten(passes, q, min(1.0, longest), enough, slope, 0.0, clearance, arm, work)
         if factor == 0.0:
             return NOT_FOUND, iteration
         if negative > 0:
-            lengthen(
-                passes, q, change, factor, max(longest, 1.0), inputs, segments, disks, chain, trial, scalars
-            )
+            lengthen(passes, q, factor, max(longest, 1.0), arm, work)
         copy(trial, q)
         if scalars[CLEARANCE] < AT_LIMIT:
             return LIMIT, iteration
     return NOT_FOUND, most
+
+
+@compiled
+def settle(passes: RestPasses, q: np.ndarray, negative: int, unit: float, arm: Arm, work: Work) -> int:
+    """Take the last step to where all forces balance; returns whether that is STABLE or UNSTABLE."""
+    change = work[3]
+    if negative == 0:
+        add_scaled(q, 1.0, change, q)
+        return STABLE
+    eliminate(passes, 1.0, arm[1], arm[2], work)
+    substitute(passes, work)
+    if measure(change, unit)[0] < FAR_FROM_REST:
+        add_scaled(q, 1.0, change, q)
+    return UNSTABLE
 
 
 @compiled
@@ -348,15 +300,10 @@ def examine_stability(
     eigenvalues of the potential energy's Hessian: at an equilibrium, its unstable directions.
     """
     n, dofs = q.shape
-    chain, pivots, scalars = (
-        np.empty((n, passes.chain_columns)),
-        np.empty((n, passes.pivot_columns)),
-        np.empty(SCALARS),
-    )
-    residual, descent = np.empty((n, dofs)), np.empty((n, dofs))
+    chain, scalars, residual = np.empty((n, passes.chain_columns)), np.empty(SCALARS), np.empty((n, dofs))
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     run(passes.residual, n, scalars, disks, chain, residual)
-    negative = eliminate(passes, 1.0, segments, disks, chain, residual, descent, pivots, scalars)
+    negative = solve_exactly(passes, segments, disks, chain, residual, np.empty((n, dofs)))
     run(passes.observe, n, scalars, q, inputs, segments, disks, chain, pose)
     return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative
 
@@ -390,6 +337,7 @@ def solve_exactly(
     """Set change to -H^-1 right, for the q that ``chain`` is of; returns H's negative eigenvalues."""
     n, dofs = right.shape
     descent, pivots, scalars = np.empty((n, dofs)), np.empty((n, passes.pivot_columns)), np.empty(SCALARS)
-    negative = eliminate(passes, 1.0, segments, disks, chain, right, descent, pivots, scalars)
-    run(passes.substitute, n, scalars, chain, descent, change)
+    work = chain, right, descent, change, change, pivots, scalars
+    negative = eliminate(passes, 1.0, segments, disks, work)
+    substitute(passes, work)
     return negative
