@@ -87,14 +87,13 @@ def fixed_steps(
     method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, 0.0)
     n, dofs = shape[1:]
     stages = tuple(np.empty((len(tableau.c), n, dofs)) for _ in range(3))
-    work, chain = np.empty((6, n, dofs)), np.empty((n, kernel.widths["chain"]))
-    scalars = np.empty(SCALARS)
+    workspace = np.empty((n, kernel.widths["chain"])), np.empty((6, n, dofs)), np.empty(SCALARS)
     start_records(kernel.passes, span.start, y, arm, records)
     times, states, accelerations, _ = records
     h = (span.end - span.start) / count
     for row in range(count):
         stages[2][0] = accelerations[row]
-        arguments = (1e-11, arm, chain, work, stages, states[row + 1], scalars)
+        arguments = (1e-11, arm, stages, workspace, states[row + 1])
         step_once(kernel.passes, times[row], h, states[row], 0.1, method, *arguments)
         times[row + 1], accelerations[row + 1] = times[row] + h, stages[2][-1]
     return states[-1, : 2 * dynamics.size]

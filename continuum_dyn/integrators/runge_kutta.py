@@ -16,6 +16,7 @@ Arguments travel in groups:
 - ``method``: a, c, error weights, predictor of the tableau, and ``lasting``, the time (s) for which an error
   of the rates is taken to last;
 - ``stages``: q, u, w, shape (stages, n, dofs);
+- ``workspace``: chain; six arrays like q, shape (6, n, dofs); scalars;
 - ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,
   its powers, in and dissipated, those at Lobatto's two inner points of that step and at its end.
 """
@@ -98,9 +99,7 @@ def solve_stage(
     stage: Triple,
     inputs: np.ndarray,
     arm: Triple,
-    chain: np.ndarray,
-    work: np.ndarray,
-    scalars: np.ndarray,
+    workspace: Triple,
 ) -> tuple[int, float]:
     """Newton's method for one ``stage``: its q, u and w (n, dofs), w from its predictor; ``allowed`` in m.
 
@@ -108,6 +107,7 @@ def solve_stage(
     """
     q, u, w = stage
     _, segments, disks = arm
+    chain, work, scalars = workspace
     residual, descent, change = work[0], work[1], work[2]
     n = q.shape[0]
     last, iterations = 0.0, 0
@@ -147,11 +147,9 @@ def step_once(
     method: Method,
     tolerance: float,
     arm: Triple,
-    chain: np.ndarray,
-    work: np.ndarray,
     stages: Triple,
+    workspace: Triple,
     next_y: np.ndarray,
-    scalars: np.ndarray,
 ) -> tuple[float, float, int]:
     """All stages of one step from (t, y), whose first acceleration is known.
 
@@ -161,6 +159,7 @@ def step_once(
     """
     a, c, error_weights, predictor, lasting = method
     stage_q, stage_u, stage_w = stages
+    chain, work, scalars = workspace
     count, n, dofs = stage_w.shape
     size = n * dofs
     flat_q, flat_u = stage_q.reshape((count, size)), stage_u.reshape((count, size))
@@ -184,9 +183,7 @@ def step_once(
             (stage_q[s], stage_u[s], stage_w[s]),
             inputs,
             arm,
-            chain,
-            work,
-            scalars,
+            workspace,
         )
         iterations += abs(took)
         if took < 0:
@@ -239,7 +236,7 @@ def advance(
     _, n, dofs = accelerations.shape
     shape = (count, n, dofs)
     stages = (np.empty(shape), np.empty(shape), np.empty(shape))
-    work, chain, scalars = np.empty((6, n, dofs)), np.empty((n, passes.chain_columns)), np.empty(SCALARS)
+    workspace = (np.empty((n, passes.chain_columns)), np.empty((6, n, dofs)), np.empty(SCALARS))
     taken, rejected, iterations = 0, 0, 0
     last_part = 1.0
     while taken < len(times) - 1:
@@ -252,20 +249,9 @@ def advance(
         reaches = h >= 0.99 * left
         step = left if reaches else min(h, 0.5 * left)
         copy(accelerations[taken], stages[2][0])
+        y, next_y = states[taken], states[taken + 1]
         error, rate, took = step_once(
-            passes,
-            t,
-            step,
-            states[taken],
-            rate,
-            method,
-            tolerance,
-            arm,
-            chain,
-            work,
-            stages,
-            states[taken + 1],
-            scalars,
+            passes, t, step, y, rate, method, tolerance, arm, stages, workspace, next_y
         )
         iterations += took
         if not error <= tolerance:
@@ -275,14 +261,14 @@ def advance(
         part = max(error / tolerance, 1e-6)
         factor, last_part = growth(part, last_part, order), part
         h = max(h, step) if reaches and factor > 1.0 else step * factor
-        states[taken + 1, 2 * n * dofs], states[taken + 1, 2 * n * dofs + 1] = 0.0, 0.0
-        bad = clearance_of(passes, arm[1], stages[0][count - 1]) <= 0.0 or not finite(states[taken + 1])
+        next_y[2 * n * dofs], next_y[2 * n * dofs + 1] = 0.0, 0.0
+        bad = clearance_of(passes, arm[1], stages[0][count - 1]) <= 0.0 or not finite(next_y)
         if bad and taken > 0:
             return NO_ROOM, taken, step, rate, rejected, iterations
         taken += 1
         times[taken] = t_bound if reaches else t + step
         copy(stages[2][count - 1], accelerations[taken])
-        add_work(passes, taken, records, arm, chain, work, scalars)
+        add_work(passes, taken, records, arm, workspace)
         if bad:
             return NO_ROOM, taken, h, rate, rejected, iterations
     return (FINISHED if times[taken] >= t_bound else GOING_ON), taken, h, rate, rejected, iterations
@@ -303,9 +289,7 @@ def add_work(
     row: int,
     records: Records,
     arm: Triple,
-    chain: np.ndarray,
-    work: np.ndarray,
-    scalars: np.ndarray,
+    workspace: Triple,
 ) -> None:
     """The integrals of the powers at the end of step ``row``, by Lobatto's rule on the step's interpolant.
 
@@ -316,6 +300,7 @@ def add_work(
     _, n, dofs = accelerations.shape
     size = n * dofs
     pieces, segments, disks = arm
+    chain, work, scalars = workspace
     inputs, between, at = np.empty(passes.inputs), np.empty((3, states.shape[1])), np.empty(3)
     h = times[row] - times[row - 1]
     middle, apart = times[row - 1] + 0.5 * h, 0.5 * h / ROOT_5
