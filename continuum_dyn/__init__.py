@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from statics.support.lazy_names import loaded_when_asked_for
 
 if TYPE_CHECKING:
-    from continuum_dyn.scenario.reading import load_scenario
     from continuum_dyn.scenario.scenario import Scenario
+    from continuum_dyn.scenario_files.reading import load_scenario
     from continuum_dyn.simulation import Run, simulate
     from continuum_dyn.simulation.trajectory import Trajectory
 

@@ -22,8 +22,8 @@ import statics
 from continuum_dyn.cli import app
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
-from continuum_dyn.scenario.schema import json_schema
 from continuum_dyn.scenario.studies import STUDIES
+from continuum_dyn.scenario_files.schema import json_schema
 from statics.effects import STATIC_EFFECTS
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES

@@ -7,7 +7,7 @@ import pytest
 from conftest import SCENARIOS, edited, motion
 
 from continuum_dyn import load_scenario
-from continuum_dyn.scenario.reading import LARGEST, SMALLEST
+from continuum_dyn.scenario_files.reading import LARGEST, SMALLEST
 from statics import InputError
 from statics.arm import RONE2012
 

@@ -31,7 +31,7 @@ def cost(
     """
     from continuum_dyn.experiments.cost import measure
     from continuum_dyn.experiments.cost_file import write_cost
-    from continuum_dyn.scenario.reading import load_scenario
+    from continuum_dyn.scenario_files.reading import load_scenario
     from continuum_dyn.views.figures import plots
 
     scenario = load_scenario(file, overrides or ())

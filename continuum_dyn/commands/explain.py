@@ -36,7 +36,7 @@ def explain(
         show_modes,
         show_what_to_leave_out,
     )
-    from continuum_dyn.scenario.reading import load_scenario
+    from continuum_dyn.scenario_files.reading import load_scenario
 
     scenario = load_scenario(file, overrides or ())
     scene = scenario.scene

@@ -41,7 +41,7 @@ def modes(
     and NAME_modes.png, with the first six.
     """
     from continuum_dyn.modes import modes_at_rest
-    from continuum_dyn.scenario.reading import load_scenario
+    from continuum_dyn.scenario_files.reading import load_scenario
     from continuum_dyn.views.figures import plots
 
     scenario = load_scenario(file, overrides or ())

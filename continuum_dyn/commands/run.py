@@ -93,7 +93,7 @@ def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
     with held():  # what Ctrl-C breaks off within the import of a library might come out as anything
         from continuum_dyn.record import read_log
         from continuum_dyn.record.logged_scenario import logged_scenario
-        from continuum_dyn.scenario.reading import load_scenario
+        from continuum_dyn.scenario_files.reading import load_scenario
 
     if path.suffix != ".h5":
         return Job(path, load_scenario(path, overrides), out / f"{path.stem}.h5")

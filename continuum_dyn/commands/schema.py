@@ -16,6 +16,6 @@ def schema() -> None:
 
         #:schema ./scenario.schema.json
     """
-    from continuum_dyn.scenario.schema import json_schema
+    from continuum_dyn.scenario_files.schema import json_schema
 
     typer.echo(json.dumps(json_schema(), indent=2))

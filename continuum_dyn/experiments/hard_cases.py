@@ -9,10 +9,10 @@ import numpy as np
 from continuum_dyn.experiments.bounds import Bound, bounds_of
 from continuum_dyn.integrators import Budget
 from continuum_dyn.scenario.expect import Expected
-from continuum_dyn.scenario.reading import load_expecting
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import FIXED_STEP, Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
+from continuum_dyn.scenario_files.reading import load_expecting
 from continuum_dyn.simulation import Run, simulate
 from continuum_dyn.simulation.accuracy import tip_distance
 from continuum_dyn.simulation.trajectory import Trajectory

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from continuum_dyn.record import Log
-from continuum_dyn.scenario.reading import parse
 from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario_files.reading import parse
 from statics.errors import InputError, LogError
 
 

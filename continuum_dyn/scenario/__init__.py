@@ -1,1 +1,1 @@
-"""Scenario files come in; scenarios, checked, go out."""
+"""Scenarios as data: an arm with its effects, what drives it over time, a study, a solver, expectations."""

@@ -10,7 +10,7 @@ import pytest
 
 from continuum_dyn.cli import app
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.scenario.schema import json_schema
+from continuum_dyn.scenario_files.schema import json_schema
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
 

@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 from continuum_dyn import load_scenario
 from continuum_dyn.cli import app
 from continuum_dyn.record import read_log
-from continuum_dyn.scenario.overrides import apply_overrides
 from continuum_dyn.scenario.profiles import Constant, Sine, Step
-from continuum_dyn.scenario.toml_text import toml_text
+from continuum_dyn.scenario_files.overrides import apply_overrides
+from continuum_dyn.scenario_files.toml_text import toml_text
 from statics import DiskLoads, InputError
 
 STEP = SCENARIOS / "step_response.toml"

@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 from continuum_dyn import load_scenario
 from continuum_dyn.cli import app
-from continuum_dyn.scenario.schema import json_schema
-from continuum_dyn.scenario.toml_text import toml_text
+from continuum_dyn.scenario_files.schema import json_schema
+from continuum_dyn.scenario_files.toml_text import toml_text
 from statics import InputError
 from statics.arm import PRESETS
 from statics.quantities import QUANTITIES

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from textwrap import shorten
 from typing import Any, get_origin
 
-from continuum_dyn.scenario.tables import ScenarioFile
-from continuum_dyn.scenario.toml_text import toml_text
+from continuum_dyn.scenario_files.tables import ScenarioFile
+from continuum_dyn.scenario_files.toml_text import toml_text
 from statics.errors import InputError, did_you_mean
 from statics.support.checked import LONGEST_LINE
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from continuum_dyn.scenario.profiles import Table
-from continuum_dyn.scenario.text import MAX_FILE_SIZE, read_text
+from continuum_dyn.scenario_files.text import MAX_FILE_SIZE, read_text
 from statics.errors import InputError
 
 MAX_ROWS = 1_000_000

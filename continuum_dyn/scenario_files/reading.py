@@ -13,15 +13,15 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from continuum_dyn.scenario.building import build
-from continuum_dyn.scenario.csv_table import Tables, table_text
 from continuum_dyn.scenario.expect import Expect
-from continuum_dyn.scenario.messages import explain
-from continuum_dyn.scenario.overrides import apply_overrides
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import FIXED_STEP
-from continuum_dyn.scenario.tables import ScenarioFile
-from continuum_dyn.scenario.text import read_text
+from continuum_dyn.scenario_files.building import build
+from continuum_dyn.scenario_files.csv_table import Tables, table_text
+from continuum_dyn.scenario_files.messages import explain
+from continuum_dyn.scenario_files.overrides import apply_overrides
+from continuum_dyn.scenario_files.tables import ScenarioFile
+from continuum_dyn.scenario_files.text import read_text
 from statics.errors import InputError
 
 MAX_FILE_SIZE = 5_000_000

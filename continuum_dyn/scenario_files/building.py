@@ -3,10 +3,10 @@
 from dataclasses import replace
 from typing import Any
 
-from continuum_dyn.scenario.csv_table import Tables
 from continuum_dyn.scenario.profiles import Constant, Profile
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario.tables import (
+from continuum_dyn.scenario_files.csv_table import Tables
+from continuum_dyn.scenario_files.tables import (
     BaseTable,
     CableTable,
     EffectsTable,

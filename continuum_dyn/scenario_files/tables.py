@@ -5,11 +5,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, Discriminator, Field, Tag, WithJsonSchema, create_model
 
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.scenario.csv_table import MAX_ROWS
 from continuum_dyn.scenario.expect import Expect
 from continuum_dyn.scenario.profiles import PROFILES, Constant, Ramp, Sine, SmoothRamp, Step
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, RampStudy, StepResponseStudy
+from continuum_dyn.scenario_files.csv_table import MAX_ROWS
 from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassPerDisk, Payload, PerDisk
 from statics.support.checked import STRICT, Line, NonNegative, Positive, Vector
 

@@ -13,7 +13,7 @@ from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import STUDIES
-from continuum_dyn.scenario.tables import (
+from continuum_dyn.scenario_files.tables import (
     ArmTable,
     BaseTable,
     CableTable,

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
-from continuum_dyn.scenario.tables import UNKNOWN_PROFILE, ScenarioFile
+from continuum_dyn.scenario_files.tables import UNKNOWN_PROFILE, ScenarioFile
 from statics.quantities import QUANTITIES
 
 
