@@ -103,10 +103,10 @@ def test_key_follows_every_source_of_the_derivation(
     structure = rone2012().structure
     folder = tmp_path / "derivation"
     copytree(loading._SHARED, folder)
-    assert set(loading._SHARED.glob("*.py")) <= set(family.sources)
+    assert set(loading._SHARED.rglob("*.py")) <= set(family.sources)
     monkeypatch.setattr(loading, "_SHARED", folder)
     found = {kernel_key(structure, family)}
-    files = sorted(folder.glob("*.py"))
+    files = sorted(folder.rglob("*.py"))
     for file in files:
         rewrite(file, file.read_text() + "\n")
         found.add(kernel_key(structure, family))

@@ -2,11 +2,11 @@
 
 from continuum_dyn.equations import momentum_steps, motion_steps
 from continuum_dyn.equations.virtual_power import derive_dynamics
-from statics.derivation.elimination import eliminate_step, substitute_step
-from statics.derivation.newton_matrix import ACCELERATION, CONSERVATIVE, IMPLICIT
-from statics.derivation.outward import clearance_step, displacement_step
-from statics.derivation.residual import residual_step
 from statics.derivation.step import Step
+from statics.derivation.steps.elimination import eliminate_step, substitute_step
+from statics.derivation.steps.newton_matrix import ACCELERATION, CONSERVATIVE, IMPLICIT
+from statics.derivation.steps.outward import clearance_step, displacement_step
+from statics.derivation.steps.residual import residual_step
 from statics.derivation.virtual_work import SceneForces
 from statics.structure import Structure
 

@@ -22,11 +22,11 @@ import sympy as sp
 
 from continuum_dyn.equations.motion_steps import integrand, name_motion
 from statics.derivation.cable_tension import drive_power, name_tensions
-from statics.derivation.forces_by_name import name_forces, rewrite
 from statics.derivation.frames import AXES, MOMENTUM, POSE, linear, perpendicular
-from statics.derivation.outward import sum_along
 from statics.derivation.reach import Reach, core_reaches, reach_of
 from statics.derivation.step import INWARD, OUTWARD, Step, carry_from_zero
+from statics.derivation.steps.forces_by_name import name_forces, rewrite
+from statics.derivation.steps.outward import sum_along
 from statics.derivation.trace import Trace, column_by_name, jacobian, symbol, symbol_column, symbol_matrix
 from statics.derivation.virtual_work import Forces, SceneForces, Symbols
 

@@ -12,11 +12,13 @@ from typing import Any
 
 import sympy as sp
 
-from statics.derivation import cable_steps
 from statics.derivation.cable_tension import drive_power, name_tensions, stored_in_cables
-from statics.derivation.forces_by_name import Known, account_total, name_forces
 from statics.derivation.frames import ACCELERATION, AXES, TWIST, components, perpendicular, split
-from statics.derivation.outward import (
+from statics.derivation.reach import Reach, core_reaches, reach_of
+from statics.derivation.step import OUTWARD, Carried, Step, carry_from_zero
+from statics.derivation.steps import cable_steps
+from statics.derivation.steps.forces_by_name import Known, account_total, name_forces
+from statics.derivation.steps.outward import (
     at_span_start,
     carry_from_base,
     name_core_positions,
@@ -25,9 +27,7 @@ from statics.derivation.outward import (
     name_span_ends,
     sum_along,
 )
-from statics.derivation.reach import Reach, core_reaches, reach_of
-from statics.derivation.residual import residual_step
-from statics.derivation.step import OUTWARD, Carried, Step, carry_from_zero
+from statics.derivation.steps.residual import residual_step
 from statics.derivation.trace import Trace, symbol, symbol_column
 from statics.derivation.virtual_work import SceneForces
 

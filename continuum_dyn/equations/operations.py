@@ -4,10 +4,10 @@ import ast
 
 from continuum_dyn.equations import motion_steps
 from continuum_dyn.equations.virtual_power import derive_dynamics
-from statics.derivation.elimination import eliminate_step, substitute_step
-from statics.derivation.newton_matrix import IMPLICIT, STATIC
-from statics.derivation.outward import pose_step
-from statics.derivation.residual import residual_step
+from statics.derivation.steps.elimination import eliminate_step, substitute_step
+from statics.derivation.steps.newton_matrix import IMPLICIT, STATIC
+from statics.derivation.steps.outward import pose_step
+from statics.derivation.steps.residual import residual_step
 from statics.derivation.virtual_work import derive_statics
 from statics.errors import InputError
 from statics.kernels.printing import module_text

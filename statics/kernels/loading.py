@@ -52,7 +52,7 @@ class Family:
         """Every source that the text is made from."""
         package = import_module(self.derive.partition(":")[0].rpartition(".")[0])
         folder = Path(package.__file__ or "").parent
-        return sorted({*folder.glob("*.py"), *_SHARED.glob("*.py"), *_PRINTING})
+        return sorted({*folder.glob("*.py"), *_SHARED.rglob("*.py"), *_PRINTING})
 
     def write(self, structure: Structure) -> str:
         """Text of the steps; derives everything with sympy."""

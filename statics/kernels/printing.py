@@ -13,10 +13,10 @@ from typing import Any
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
 
-from statics.derivation.pivots import PIVOT_SOURCES
 from statics.derivation.segment import symbol
 from statics.derivation.sigma import Sigma, ladder_source
 from statics.derivation.step import Step
+from statics.derivation.steps.pivots import PIVOT_SOURCES
 from statics.derivation.virtual_work import SceneForces
 from statics.kernels.liveness import Body, Owners, live_bodies, owners_of, symbols_of
 

@@ -25,5 +25,8 @@ class RestPasses(NamedTuple):
 
 
 REST = Family(
-    "rest", "Statics of a planar cable-driven arm.", "statics.derivation.at_rest:derive_rest", RestPasses
+    "rest",
+    "Statics of a planar cable-driven arm.",
+    "statics.derivation.steps.at_rest:derive_rest",
+    RestPasses,
 )

@@ -176,7 +176,7 @@ def test_warm_run_imports_no_sympy_and_derives_nothing(tmp_path: Path) -> None:
         "from continuum_dyn.cli import app\n"
         f"result = CliRunner().invoke(app, ['run', {STEP!r}, '--out', {str(tmp_path)!r}])\n"
         "assert result.exit_code == 0, result.output\n"
-        "assert 'statics.derivation.elimination' not in sys.modules\n"
+        "assert 'statics.derivation.steps.elimination' not in sys.modules\n"
         "assert 'sympy' not in sys.modules\n"
     )
     assert runner.invoke(app, ["run", STEP, "--out", str(tmp_path)]).exit_code == 0

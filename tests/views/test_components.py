@@ -8,7 +8,7 @@ import pyarrow as pa
 import pytest
 import rerun as rr
 
-from continuum_dyn.views.playback.components import COMPONENTS, TIMES, arrow, moments, parts
+from continuum_dyn.views.rerun_core.components import COMPONENTS, TIMES, arrow, moments, parts
 
 NAMES = [(kind, name) for kind, columns in COMPONENTS.items() for name in columns]
 

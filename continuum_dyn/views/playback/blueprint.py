@@ -9,7 +9,10 @@ from continuum_dyn.views.playback import heat_map
 from continuum_dyn.views.playback.about import ending
 from continuum_dyn.views.playback.colors import WHITE
 from continuum_dyn.views.playback.drawing import Drawn, flip_y
-from continuum_dyn.views.playback.layout import (
+from continuum_dyn.views.playback.legend import extent
+from continuum_dyn.views.playback.playback import SHORTEST_PLAYBACK, Playback
+from continuum_dyn.views.playback.plots import Plot, value_range
+from continuum_dyn.views.rerun_core.layout import (
     COLLAPSED,
     FOLLOWING,
     HIDDEN,
@@ -19,9 +22,6 @@ from continuum_dyn.views.playback.layout import (
     Layout,
     View,
 )
-from continuum_dyn.views.playback.legend import extent
-from continuum_dyn.views.playback.playback import SHORTEST_PLAYBACK, Playback
-from continuum_dyn.views.playback.plots import Plot, value_range
 
 ROOM_FOR_LEGENDS = 0.3, 0.5
 """Room for the legend after the time line, in parts of it: for one run, and for several with names."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from continuum_dyn.views.playback.playback import Playback
-from continuum_dyn.views.playback.stream import Moments, Stream
+from continuum_dyn.views.rerun_core.stream import Moments, Stream
 
 LINES, ARROWS = "archetypes.LineStrips2D", "archetypes.Arrows2D"
 

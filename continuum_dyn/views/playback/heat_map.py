@@ -6,7 +6,7 @@ from continuum_dyn.views.playback.colors import BLACK, GREY, diverging
 from continuum_dyn.views.playback.drawing import Drawn, Lines, every_frame
 from continuum_dyn.views.playback.measures import Measures
 from continuum_dyn.views.playback.playback import Playback
-from continuum_dyn.views.playback.stream import Stream
+from continuum_dyn.views.rerun_core.stream import Stream
 
 WIDTH, HEIGHT = 900, 300
 """Width and height of the picture, pixels."""

@@ -23,8 +23,8 @@ from continuum_dyn.views.playback.measures import measures_of
 from continuum_dyn.views.playback.playback import MOST_FRAMES, Playback, playback_of
 from continuum_dyn.views.playback.plots import plots_of
 from continuum_dyn.views.playback.recording import APPLICATION, send_beside, send_playback, send_rows
-from continuum_dyn.views.playback.stream import Stream
 from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, free_ports
+from continuum_dyn.views.rerun_core.stream import Stream
 from statics.errors import LogError
 
 INTERVAL = 0.5

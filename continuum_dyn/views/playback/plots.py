@@ -8,8 +8,8 @@ import numpy as np
 from continuum_dyn.views.playback.colors import GREY, PALETTE, distinct_colors, shades
 from continuum_dyn.views.playback.drawing import moments
 from continuum_dyn.views.playback.playback import Playback, spread
-from continuum_dyn.views.playback.stream import Stream
 from continuum_dyn.views.playback.targets import resting_rows
+from continuum_dyn.views.rerun_core.stream import Stream
 from statics.quantities import QUANTITIES
 
 MOST_SERIES = 8

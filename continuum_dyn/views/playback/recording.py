@@ -20,7 +20,7 @@ from continuum_dyn.views.playback.drawing import Drawn, moments, send
 from continuum_dyn.views.playback.legend import legend
 from continuum_dyn.views.playback.measures import Measures, measures_of
 from continuum_dyn.views.playback.playback import Playback, names_of, playback_of
-from continuum_dyn.views.playback.stream import Stream, content
+from continuum_dyn.views.rerun_core.stream import Stream, content
 from statics.errors import InputError, LogError
 from statics.support.interruption import held
 

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from statics.derivation import cable_steps, newton_matrix, outward
-from statics.derivation.elimination import eliminate_step, substitute_step
-from statics.derivation.residual import residual_step
 from statics.derivation.step import Step
+from statics.derivation.steps import cable_steps, newton_matrix, outward
+from statics.derivation.steps.elimination import eliminate_step, substitute_step
+from statics.derivation.steps.residual import residual_step
 from statics.derivation.virtual_work import SceneForces, derive_statics
 from statics.structure import Structure
 

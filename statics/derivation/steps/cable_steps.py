@@ -8,9 +8,9 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from statics.derivation.forces_by_name import Known
-from statics.derivation.outward import name_poses
 from statics.derivation.step import INWARD, OUTWARD, Carried, Step
+from statics.derivation.steps.forces_by_name import Known
+from statics.derivation.steps.outward import name_poses
 from statics.derivation.trace import Trace, derivative, symbol
 from statics.derivation.virtual_work import SceneForces
 

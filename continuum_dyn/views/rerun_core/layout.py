@@ -7,7 +7,7 @@ from uuid import UUID, uuid4
 
 import rerun_bindings as core
 
-from continuum_dyn.views.playback.stream import Stream, content
+from continuum_dyn.views.rerun_core.stream import Stream, content
 
 CONTAINERS = {"tabs": 1, "horizontal": 2, "vertical": 3}
 HIDDEN, COLLAPSED = 1, 2

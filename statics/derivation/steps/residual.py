@@ -2,11 +2,11 @@
 
 import sympy as sp
 
-from statics.derivation.forces_by_name import force_by_name
 from statics.derivation.frames import POSE, WRENCH, components
-from statics.derivation.outward import at_span_start
 from statics.derivation.reach import core_reaches, reach_of
 from statics.derivation.step import INWARD, Step, carry_from_zero
+from statics.derivation.steps.forces_by_name import force_by_name
+from statics.derivation.steps.outward import at_span_start
 from statics.derivation.trace import Trace, symbol
 from statics.derivation.virtual_work import SceneForces
 

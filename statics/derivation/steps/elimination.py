@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from statics.derivation.coupled_cables import carry_slopes, pass_hole, tensions_beyond_holes
-from statics.derivation.forces_by_name import cable_pull_by_name, force_by_name
 from statics.derivation.frames import ANGLE, AXES, POSE, components, perpendicular
-from statics.derivation.newton_matrix import Weights
-from statics.derivation.outward import at_span_start
 from statics.derivation.reach import Reach, core_reaches, reach_of
 from statics.derivation.step import INWARD, OUTWARD, Carried, Step, carry_from_zero
+from statics.derivation.steps.coupled_cables import carry_slopes, pass_hole, tensions_beyond_holes
+from statics.derivation.steps.forces_by_name import cable_pull_by_name, force_by_name
+from statics.derivation.steps.newton_matrix import Weights
+from statics.derivation.steps.outward import at_span_start
 from statics.derivation.trace import Trace, symbol, symbol_column, symbol_matrix
 from statics.derivation.virtual_work import SceneForces
 

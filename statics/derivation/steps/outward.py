@@ -18,11 +18,11 @@ from typing import Any
 import sympy as sp
 
 from statics.derivation.cable_tension import drive_potential, name_tensions, stored_in_cables
-from statics.derivation.forces_by_name import Known, account_total, name_forces, rewrite
 from statics.derivation.frames import NEAR_ROTATION, POSE, components, rotate, split
 from statics.derivation.reach import Reach, core_reaches, reach_of
 from statics.derivation.segment import CableSymbols, CorePointSymbols
 from statics.derivation.step import OUTWARD, Carried, Step, carry_from_zero
+from statics.derivation.steps.forces_by_name import Known, account_total, name_forces, rewrite
 from statics.derivation.trace import Trace, symbol, symbol_column
 from statics.derivation.virtual_work import SceneForces
 

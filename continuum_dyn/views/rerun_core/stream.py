@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import rerun_bindings as core
 
-from continuum_dyn.views.playback.components import COMPONENTS, arrow, moments, parts
+from continuum_dyn.views.rerun_core.components import COMPONENTS, arrow, moments, parts
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ dT = m (E dT0 + kappa (V_To o - load_T)), with o the other states and m = 1 / (1
 
 import sympy as sp
 
-from statics.derivation.newton_matrix import Weights
 from statics.derivation.segment import CableSymbols
 from statics.derivation.step import Carried
+from statics.derivation.steps.newton_matrix import Weights
 from statics.derivation.trace import Trace, symbol
 from statics.derivation.virtual_work import SceneForces
 
