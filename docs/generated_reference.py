@@ -215,9 +215,7 @@ def effects() -> str:
     parts = []
     for name, effect in EFFECTS.items():
         needs = ", ".join(code(quantity) for quantity in effect.arm_quantities)
-        lines = [
-            f"On each {effect.place}, {'at rest and in motion' if effect.acts_at_rest else 'in motion'}."
-        ]
+        lines = [f"On each {effect.site}, {'at rest and in motion' if effect.acts_at_rest else 'in motion'}."]
         lines += [f"Needs the arm's {needs}."] if needs else []
         lines += [f"Source: {effect.source}."]
         parts += [f"### `{name}`", prose(_text(effect)), " ".join(lines)]

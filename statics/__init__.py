@@ -9,7 +9,7 @@ from statics.support.lazy_names import loaded_when_asked_for
 
 if TYPE_CHECKING:
     from statics.arc_length import Path, follow_path
-    from statics.arm import RONE2012_HOLE_OFFSET, Arm, Base, Cable, Each, Payload
+    from statics.arm import RONE2012_HOLE_OFFSET, Arm, Base, Cable, Payload, PerDisk
     from statics.effects import Bending, CableFriction, Cables, DiskLoad, DiskLoads, Extension, Gravity
     from statics.effects.cables import disk_loads
     from statics.equilibria import Critical, Equilibrium, StaticSolver, equilibrium
@@ -30,7 +30,6 @@ __all__ = [
     "Critical",
     "DiskLoad",
     "DiskLoads",
-    "Each",
     "Equilibrium",
     "Extension",
     "Gravity",
@@ -38,6 +37,7 @@ __all__ = [
     "Outcome",
     "Path",
     "Payload",
+    "PerDisk",
     "Scene",
     "StaticSolver",
     "disk_loads",

@@ -1,9 +1,9 @@
 """Paths of equilibria by arc length: they are followed through folds, where a load cannot grow any further.
 
-Along a ramp of inputs both the coordinates q and the place on the ramp are unknown, and the step is given as
+Along a ramp of inputs both the coordinates q and the ramp's parameter are unknown, and the step is given as
 a length along the path (Riks 1979; Crisfield 1981; Keller 1977):
 
-    r(q, place) = 0      t . (q - q0, place - place0) = length
+    r(q, parameter) = 0      t . (q - q0, parameter - parameter0) = length
 
 with t the path's unit tangent. The bordered system takes two solutions with the elimination along the chain,
 for -r and for -dr/dplace, so a step costs O(n). Where the tangent turns back the path folds; where the number
@@ -28,25 +28,25 @@ MOST_CORRECTIONS = 10
 EASY = 4
 """Corrections up to which the next step is longer."""
 LEAST_COSINE = 0.95
-"""Of the angle between two tangents in a row; below it the step is tried again at half its length."""
+"""Least cosine between two tangents in a row: below it the step is tried again at half its length."""
 MOST_OFF = 0.1
-"""Likewise of the straight way of a step from the mean of its tangents: else the step has left the path."""
+"""Largest distance of a step from the mean of its tangents: beyond it the step has left the path."""
 SHORTEST_HIDING = 1e-3
-"""Likewise steps longer than this that seem to hide two folds: what snaps by less may be taken for smooth."""
+"""Shortest step that may hide two folds and is tried again: what snaps by less may be taken for smooth."""
 HALF_DIFFERENCE = 0.5
-"""Of places on the ramp, for the residual's derivative by the place: it is linear in tensions and factors."""
+"""Change of the parameter by which the residual is differenced: tensions and factors are linear in it."""
 NEARBY = 1e-6
-"""Likewise where cables driven by their length may go slack or catch close by."""
+"""The same where cables driven by their length may go slack or catch close by."""
 CATCHING = 1e-3
 """Longest step in which one may: there the path has a corner."""
 NEAR_LIMIT = 1e-3
 """Clearance below which a path that cannot be followed any further has come to a geometric limit."""
 JUST_BEFORE = 1e-9
-"""On the ramp: there the stretch before one of its points counts."""
+"""Distance before one of the ramp's points at which the interval before it counts."""
 LOCATED = 1e-13
-"""Of a step's length, within which folds, limits and points of the ramp are located."""
+"""Part of a step's length within which folds, limits and points of the ramp are located."""
 BRANCHING_LOCATED = 1e-6
-"""Likewise branchings: there the matrix is singular, and has no tangent for what is closer."""
+"""The same for branchings: there the matrix is singular, and has no tangent for what is closer."""
 
 
 @dataclass(frozen=True)
@@ -55,12 +55,12 @@ class Path:
 
     ``outcome`` says how it ended: ``completed`` at the ramp's last point, ``geometry_limit``, or
     ``no_equilibrium`` where it turns back beyond the ramp's first point or cannot be followed any further;
-    ``end`` is where that was, and ``places`` are those on the ramp of its points, counted from 0.
+    ``end`` is where that was, and ``parameters`` are the ramp's at its points, counted from 0.
     """
 
     outcome: Outcome
     points: list[Equilibrium]
-    places: list[float]
+    parameters: list[float]
     end: Equilibrium
     message: str = ""
 
@@ -101,13 +101,13 @@ def follow(
     return ArcLength(solver, ramp).follow(first, steps)
 
 
-class _Place(NamedTuple):
-    """A point of the path: coordinates, place on the ramp, unit tangent, and what the elimination says."""
+class _PathPoint(NamedTuple):
+    """A point of the path: coordinates, the ramp's parameter, unit tangent, and what the elimination says."""
 
     q: np.ndarray
-    place: float
+    parameter: float
     along: np.ndarray
-    along_place: float
+    along_parameter: float
     negative: int
     clearance: float
     corrections: int = 0
@@ -126,10 +126,10 @@ class ArcLength:
         self.weight = segments / units**2
         """So that a uniform bend of the whole arm counts as its angle, whatever the number of segments."""
 
-    def inputs(self, place: float) -> np.ndarray:
-        """Inputs at a place on the ramp, linear from one of its points to the next and beyond its ends."""
-        point = min(max(int(place), 0), len(self.ramp) - 2)
-        return self.ramp[point] + (place - point) * (self.ramp[point + 1] - self.ramp[point])
+    def inputs(self, parameter: float) -> np.ndarray:
+        """Inputs at a parameter, linear from one point of the ramp to the next and beyond its ends."""
+        point = min(max(int(parameter), 0), len(self.ramp) - 2)
+        return self.ramp[point] + (parameter - point) * (self.ramp[point + 1] - self.ramp[point])
 
     def residual(self, q: np.ndarray, inputs: np.ndarray) -> tuple[np.ndarray, float]:
         """Unbalanced generalized forces, shape of q, and the clearance."""
@@ -137,17 +137,17 @@ class ArcLength:
         numbers = (inputs, solver.segments, solver.disks, self.chain)
         return residual, newton.unbalanced(self.kernel.passes, q, *numbers, residual)
 
-    def by_place(self, q: np.ndarray, place: float) -> np.ndarray:
-        """Derivative of the residual by the place on the ramp."""
-        point = min(max(int(place), 0), len(self.ramp) - 2)
+    def by_parameter(self, q: np.ndarray, parameter: float) -> np.ndarray:
+        """Derivative of the residual by the ramp's parameter."""
+        point = min(max(int(parameter), 0), len(self.ramp) - 2)
         way = self.ramp[point + 1] - self.ramp[point]
-        ahead, behind = (self.inputs(place) + sign * self.half_difference * way for sign in (1, -1))
+        ahead, behind = (self.inputs(parameter) + sign * self.half_difference * way for sign in (1, -1))
         return (self.residual(q, ahead)[0] - self.residual(q, behind)[0]) / (2 * self.half_difference)
 
-    def taut(self, at: "_Place") -> list[bool]:
-        """Which cables pull at a place: of those driven by their length some may be slack."""
+    def taut(self, at: _PathPoint) -> list[bool]:
+        """Which cables pull at a point: of those driven by their length some may be slack."""
         solver, pose = self.solver, np.empty((len(at.q), 3))
-        inputs = self.inputs(at.place)
+        inputs = self.inputs(at.parameter)
         numbers = (inputs, solver.segments, solver.disks, self.chain)
         self.kernel.run("observe", at.q, *numbers, pose)
         disks = pose[solver.scene.arm.disk_nodes].T
@@ -160,63 +160,63 @@ class ArcLength:
         return change, newton.solve_exactly(self.kernel.passes, *numbers)
 
     def tangent_at(
-        self, q: np.ndarray, place: float, backwards: bool = False
+        self, q: np.ndarray, parameter: float, backwards: bool = False
     ) -> tuple[np.ndarray, int, float]:
         """dq/dplace along the path, the number of unstable directions, and the clearance.
 
         At one of the ramp's points it is that of the stretch ahead, or behind if the path goes backwards.
         """
-        by_place = self.by_place(q, place - JUST_BEFORE if backwards else place)
-        clearance = self.residual(q, self.inputs(place))[1]
-        return *self.solve(by_place), clearance
+        by_parameter = self.by_parameter(q, parameter - JUST_BEFORE if backwards else parameter)
+        clearance = self.residual(q, self.inputs(parameter))[1]
+        return *self.solve(by_parameter), clearance
 
-    def place_at(
-        self, q: np.ndarray, place: float, towards: tuple[np.ndarray, float], corrections: int = 0
-    ) -> _Place:
+    def point_at(
+        self, q: np.ndarray, parameter: float, towards: tuple[np.ndarray, float], corrections: int = 0
+    ) -> _PathPoint:
         """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
-        return self._with_tangent(q, place, towards, corrections, backwards=towards[1] < 0.0)
+        return self._with_tangent(q, parameter, towards, corrections, backwards=towards[1] < 0.0)
 
     def _with_tangent(
         self,
         q: np.ndarray,
-        place: float,
+        parameter: float,
         towards: tuple[np.ndarray, float],
         corrections: int = 0,
         *,
         backwards: bool,
-    ) -> _Place:
-        by_place, negative, clearance = self.tangent_at(q, place, backwards)
-        length = np.sqrt(self.inner(by_place, by_place) + 1.0)
-        ahead = self.inner(by_place, towards[0]) + towards[1] >= 0.0
+    ) -> _PathPoint:
+        by_parameter, negative, clearance = self.tangent_at(q, parameter, backwards)
+        length = np.sqrt(self.inner(by_parameter, by_parameter) + 1.0)
+        ahead = self.inner(by_parameter, towards[0]) + towards[1] >= 0.0
         length = length if ahead else -length
-        return _Place(q, place, by_place / length, 1.0 / length, negative, clearance, corrections)
+        return _PathPoint(q, parameter, by_parameter / length, 1.0 / length, negative, clearance, corrections)
 
     def inner(self, one: np.ndarray, other: np.ndarray) -> float:
         """Scalar product of two changes of coordinates, in rad^2."""
         return float(np.sum(self.weight * one * other))
 
-    def corrected(self, here: _Place, length: float) -> _Place | None:
+    def corrected(self, here: _PathPoint, length: float) -> _PathPoint | None:
         """The point of the path that far along its tangent, by Newton's method; None if it is not found."""
-        q, place = here.q + length * here.along, here.place + length * here.along_place
+        q, parameter = here.q + length * here.along, here.parameter + length * here.along_parameter
         size = np.inf
         for correction in range(1, MOST_CORRECTIONS + 1):
-            by_place = self.by_place(q, place)
-            residual, _ = self.residual(q, self.inputs(place))
+            by_parameter = self.by_parameter(q, parameter)
+            residual, _ = self.residual(q, self.inputs(parameter))
             change, _ = self.solve(residual)
-            turning, _ = self.solve(by_place)
+            turning, _ = self.solve(by_parameter)
             lacking = length - self.inner(here.along, q - here.q)
-            lacking -= here.along_place * (place - here.place) + self.inner(here.along, change)
-            step = lacking / (self.inner(here.along, turning) + here.along_place)
+            lacking -= here.along_parameter * (parameter - here.parameter) + self.inner(here.along, change)
+            step = lacking / (self.inner(here.along, turning) + here.along_parameter)
             change += step * turning
             last, size = size, np.abs(change * np.sqrt(self.weight)).max() + abs(step)
             if not size < 10.0 * max(length, SHORTEST_STEP):
                 return None
-            q, place = q + change, place + step
+            q, parameter = q + change, parameter + step
             if size < search.AT_REST and not (self.by_length and size < search.FALLING * last):
-                return self.place_at(q, place, (here.along, here.along_place), correction)
+                return self.point_at(q, parameter, (here.along, here.along_parameter), correction)
         return None
 
-    def at_point(self, near: _Place, point: float, way: float) -> tuple[_Place, _Place]:
+    def at_point(self, near: _PathPoint, point: float, way: float) -> tuple[_PathPoint, _PathPoint]:
         """The equilibrium at exactly a point of the ramp, from one within rounding of it.
 
         As the path comes to it and as it goes on, ``way`` 1 forwards or -1 backwards: the ramp may have a
@@ -225,15 +225,15 @@ class ArcLength:
         residual, _ = self.residual(near.q, self.inputs(point))
         q = near.q + self.solve(residual)[0]
         towards = 0.0 * q, way
-        return self._with_tangent(q, point, towards, backwards=way > 0.0), self.place_at(q, point, towards)
+        return self._with_tangent(q, point, towards, backwards=way > 0.0), self.point_at(q, point, towards)
 
     def located(
-        self, here: _Place, there: float, value: Callable[[_Place], float], within: float = LOCATED
-    ) -> tuple[_Place, float] | None:
+        self, here: _PathPoint, there: float, value: Callable[[_PathPoint], float], within: float = LOCATED
+    ) -> tuple[_PathPoint, float] | None:
         """Where, up to ``there`` along the tangent, a value changes its sign, and how far; None if lost."""
         from scipy.optimize import brentq  # every run loads this module, few follow a path, and SciPy is slow
 
-        found: dict[float, _Place] = {0.0: here}
+        found: dict[float, _PathPoint] = {0.0: here}
 
         def value_at(length: float) -> float:
             if length not in found:
@@ -269,8 +269,8 @@ class _Follower:
 
     def __init__(self, arc: ArcLength, first: Equilibrium) -> None:
         self.arc, self.length, self.forwards = arc, FIRST_STEP, True
-        self.here = arc.place_at(first.coordinates, 0.0, (0.0 * first.coordinates, 1.0))
-        self.points, self.places = [first], [0.0]
+        self.here = arc.point_at(first.coordinates, 0.0, (0.0 * first.coordinates, 1.0))
+        self.points, self.parameters = [first], [0.0]
 
     def follow(self, steps: Iterable[object], until_critical: bool) -> Path:
         last = len(self.arc.ramp) - 1
@@ -281,17 +281,17 @@ class _Follower:
             self.here, critical, at_limit = stepped
             if at_limit:
                 return self._ended(Outcome.GEOMETRY_LIMIT)
-            if critical or self.here.place in range(last + 1):
+            if critical or self.here.parameter in range(last + 1):
                 self._keep(critical)
             if critical and until_critical:
-                return Path(Outcome.COMPLETED, self.points, self.places, self.points[-1])
-            if not critical and self.here.place == last:
+                return Path(Outcome.COMPLETED, self.points, self.parameters, self.points[-1])
+            if not critical and self.here.parameter == last:
                 return self._ended(Outcome.COMPLETED)
-            if self.here.place <= 0.0 and not self.forwards:
+            if self.here.parameter <= 0.0 and not self.forwards:
                 return self._ended(Outcome.NO_EQUILIBRIUM, "it turns back beyond the ramp's first point")
         return self._ended(Outcome.NO_EQUILIBRIUM, "it takes more steps than it may")
 
-    def _step(self) -> tuple[_Place, Critical, bool] | None:
+    def _step(self) -> tuple[_PathPoint, Critical, bool] | None:
         """The next point of the path: a step on, or what comes first on its way; None if there is none."""
         while self.length > SHORTEST_STEP:
             length, there = self.length, self.arc.corrected(self.here, self.length)
@@ -304,36 +304,38 @@ class _Follower:
             self.length = 0.5 * min(length, self.length)
         return None
 
-    def _is_smooth(self, there: _Place, length: float) -> bool:
+    def _is_smooth(self, there: _PathPoint, length: float) -> bool:
         """Whether the path turns little on the way, goes where its tangents say, and hides no two folds."""
         here, inner = self.here, self.arc.inner
         if self.arc.by_length and length < CATCHING and self.arc.taut(here) != self.arc.taut(there):
             return True
-        cosine = inner(here.along, there.along) + here.along_place * there.along_place
+        cosine = inner(here.along, there.along) + here.along_parameter * there.along_parameter
         off = (there.q - here.q) / length - 0.5 * (here.along + there.along)
-        off_place = (there.place - here.place) / length - 0.5 * (here.along_place + there.along_place)
-        if cosine < LEAST_COSINE or np.sqrt(inner(off, off) + off_place**2) > MOST_OFF:
+        off_parameter = (there.parameter - here.parameter) / length - 0.5 * (
+            here.along_parameter + there.along_parameter
+        )
+        if cosine < LEAST_COSINE or np.sqrt(inner(off, off) + off_parameter**2) > MOST_OFF:
             return False
         return length < SHORTEST_HIDING or not _hides_folds(here, there, length)
 
-    def _cut(self, there: _Place, length: float) -> tuple[_Place, Critical, bool] | None:
+    def _cut(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
         """A step up to the first of what it passes: a limit, a point of the ramp, a fold, a branching."""
         arc, here = self.arc, self.here
         if there.clearance < search.AT_LIMIT:
             cut = arc.located(here, length, lambda at: at.clearance - search.AT_LIMIT)
             return None if cut is None else (cut[0], Critical.NO, True)
-        point, come_to = _point_between(here.place, there.place), there
+        point, come_to = _point_between(here.parameter, there.parameter), there
         if point is not None:
-            cut = arc.located(here, length, lambda at: at.place - point)
+            cut = arc.located(here, length, lambda at: at.parameter - point)
             if cut is None:
                 return None
-            come_to, there = arc.at_point(cut[0], point, np.sign(there.place - here.place))
+            come_to, there = arc.at_point(cut[0], point, np.sign(there.parameter - here.parameter))
             length = cut[1]
         if not self._is_smooth(come_to, length):
             return None
         before, beyond = here.negative, there.negative
-        if (there.along_place > 0.0) != self.forwards:
-            cut, critical = arc.located(here, length, lambda at: at.along_place), Critical.FOLD
+        if (there.along_parameter > 0.0) != self.forwards:
+            cut, critical = arc.located(here, length, lambda at: at.along_parameter), Critical.FOLD
         elif before != beyond:
             middle, critical = 0.5 * (before + beyond), Critical.BRANCHING
             cut = arc.located(here, length, lambda at: at.negative - middle, BRANCHING_LOCATED)
@@ -350,12 +352,12 @@ class _Follower:
             fewest = min(here.negative, before.unstable_directions or 0)
             found = replace(found, outcome=Outcome.UNSTABLE_EQUILIBRIUM, unstable_directions=fewest)
         self.points.append(replace(found, critical=critical))
-        self.places.append(here.place)
+        self.parameters.append(here.parameter)
 
     def _equilibrium(self) -> Equilibrium:
         here, arc = self.here, self.arc
         ended = search.UNSTABLE if here.negative else search.STABLE
-        return arc.solver.examine(here.q, arc.inputs(here.place), ended)
+        return arc.solver.examine(here.q, arc.inputs(here.parameter), ended)
 
     def _lost(self) -> Path:
         if self.here.clearance < NEAR_LIMIT:
@@ -363,23 +365,23 @@ class _Follower:
         return self._ended(Outcome.NO_EQUILIBRIUM, "it cannot be followed any further")
 
     def _ended(self, outcome: Outcome, message: str = "") -> Path:
-        return Path(outcome, self.points, self.places, self._equilibrium(), message)
+        return Path(outcome, self.points, self.parameters, self._equilibrium(), message)
 
 
-def _hides_folds(here: _Place, there: _Place, length: float) -> bool:
-    """Whether the cubic with the slopes of the place at both ends turns back and forth between them."""
-    start, end = np.array([here.along_place, there.along_place]) * np.sign(here.along_place)
-    mean = (there.place - here.place) / length * np.sign(here.along_place)
+def _hides_folds(here: _PathPoint, there: _PathPoint, length: float) -> bool:
+    """Whether the cubic with the slopes of the parameter at both ends turns back and forth between them."""
+    start, end = np.array([here.along_parameter, there.along_parameter]) * np.sign(here.along_parameter)
+    mean = (there.parameter - here.parameter) / length * np.sign(here.along_parameter)
     bend, twist = 6.0 * mean - 4.0 * start - 2.0 * end, 3.0 * (start + end) - 6.0 * mean
     if end <= 0.0 or twist <= 0.0 or not 0.0 < -bend < 2.0 * twist:
         return False
     return start - bend**2 / (4.0 * twist) < 0.0
 
 
-def _point_between(place: float, other: float) -> float | None:
-    """The ramp's point strictly between two places on it that comes first on the way; None without one."""
-    if other > place:
-        point = float(np.floor(place)) + 1.0
+def _point_between(parameter: float, other: float) -> float | None:
+    """The ramp's point strictly between two parameters that comes first on the way; None without one."""
+    if other > parameter:
+        point = float(np.floor(parameter)) + 1.0
         return point if point < other else None
-    point = float(np.ceil(place)) - 1.0
+    point = float(np.ceil(parameter)) - 1.0
     return point if point > other else None

@@ -79,23 +79,23 @@ class CableKind(NamedTuple):
         return self.driven_by_length or self.rubs
 
 
-PerDisk = Annotated[tuple[Positive, ...], Field(strict=False, min_length=1)]
-MassPerDisk = Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1)]
+PositiveList = Annotated[tuple[Positive, ...], Field(strict=False, min_length=1)]
+MassList = Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1)]
 
 
 @dataclass(frozen=True, config=STRICT)
-class Each:
+class PerDisk:
     """Numbers of an arm whose disks, or the cores before them, differ: one for each disk, from the base on.
 
     What is given here beats the arm's one number of that name.
     """
 
-    disk_spacing: PerDisk | None = None
-    youngs_modulus: PerDisk | None = None
-    area: PerDisk | None = None
-    second_moment: PerDisk | None = None
-    disk_mass: MassPerDisk | None = None
-    disk_inertia: MassPerDisk | None = None
+    disk_spacing: PositiveList | None = None
+    youngs_modulus: PositiveList | None = None
+    area: PositiveList | None = None
+    second_moment: PositiveList | None = None
+    disk_mass: MassList | None = None
+    disk_inertia: MassList | None = None
     reference_curvature: Annotated[tuple[float, ...], Field(strict=False)] | None = None
 
 
@@ -162,7 +162,7 @@ class Arm:
     core_density: Positive | None = None
     reference_curvature: float = 0.0
     subsegments: Subsegments = 1
-    each: Each = field(default=Each())
+    each: PerDisk = field(default=PerDisk())
     cables: Annotated[tuple[Cable, ...], Field(strict=False)] = field(default=())
     payloads: Annotated[tuple[Payload, ...], Field(strict=False)] = field(default=())
     base: Base | None = None

@@ -197,7 +197,7 @@ class StaticSolver:
             ended = search.NOT_FOUND
         return Equilibrium(
             outcome=_outcome(ended, negative),
-            inputs=self.scene.held(inputs),
+            inputs=self.scene.with_zero_rates(inputs),
             **driven,
             bend_angle=q[:, 0],
             elongation=elongation,

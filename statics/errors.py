@@ -9,7 +9,7 @@ class ContinuumError(Exception):
 
 
 class InputError(ContinuumError):
-    """What was given cannot be simulated as given."""
+    """An input that cannot be simulated as it was given."""
 
 
 class KernelCacheError(ContinuumError):

@@ -19,7 +19,7 @@ SMOOTH = 0.25
 SAME = 1e-6
 """Root of the summed squares of the changes of bend angle, rad, below which two equilibria are the same."""
 TOUCHING = 1e-3
-"""Likewise the ends of two paths that meet where one branches off the other: there the matrix is singular."""
+"""The same for ends of two paths that meet where one branches off the other: the matrix is singular there."""
 
 
 def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
@@ -121,8 +121,8 @@ def _on_one_smooth_path(arc: ArcLength, before: Equilibrium, point: Equilibrium)
     length = np.sqrt(arc.inner(way, way))
     if length < SAME and not np.array_equal(before.inputs, point.inputs):
         return point.unstable_directions == before.unstable_directions
-    for place, end in ((0.0, before), (1.0, point)):
-        off = arc.tangent_at(end.coordinates, place)[0] - way
+    for parameter, end in ((0.0, before), (1.0, point)):
+        off = arc.tangent_at(end.coordinates, parameter)[0] - way
         if np.sqrt(arc.inner(off, off)) > SMOOTH * length:
             return False
     return True

@@ -170,7 +170,7 @@ class Scene:
         """Places, from 0 on, of the cables whose displacement is given."""
         return [number for number, kind in enumerate(self.cable_kinds) if kind.driven_by_length]
 
-    def held(self, inputs: np.ndarray) -> np.ndarray:
+    def with_zero_rates(self, inputs: np.ndarray) -> np.ndarray:
         """Inputs with zero rates and accelerations of all that moves."""
         moving = [name.startswith(("cable_displacement_rate", *BASE_MOTION)) for name in self.inputs]
         still = inputs.copy()
@@ -216,7 +216,7 @@ class Scene:
     @property
     def core_has_mass(self) -> bool:
         """Whether the core's own mass counts: the arm has its density, and some effect acts on masses."""
-        return self.arm.core_density is not None and any(effect.place == "mass" for effect in self.effects)
+        return self.arm.core_density is not None and any(effect.site == "mass" for effect in self.effects)
 
     @property
     def has_subsegments(self) -> bool:
@@ -232,19 +232,19 @@ class Scene:
         """Whether the scene calls for the effect of that name."""
         return any(effect.name == name for effect in self.effects)
 
-    def table(self, place: str, columns: Iterable[str]) -> np.ndarray:
+    def table(self, site: str, columns: Iterable[str]) -> np.ndarray:
         """The run-time numbers of a kernel, shape (segments, columns), for "segment" or "disk" (nodes).
 
         A span's stand on its segments. Raises ``InputError`` for what neither the arm nor an effect knows.
         """
         known: dict[str, np.ndarray | float] = {}
-        known.update(self.arm.segment_columns() if place == "segment" else self.arm.node_columns())
+        known.update(self.arm.segment_columns() if site == "segment" else self.arm.node_columns())
         for effect in self.effects:
             known.update(effect.columns(self.arm))
         names = list(columns)
         for name in names:
             if name not in known:
-                raise InputError(f"'{name}' has no value on each {place}.{did_you_mean(name, known)}")
+                raise InputError(f"'{name}' has no value on each {site}.{did_you_mean(name, known)}")
         table = np.empty((self.arm.segments, len(names)))
         for number, name in enumerate(names):
             table[:, number] = known[name]

@@ -20,10 +20,10 @@ from statics import (
     Cables,
     DiskLoad,
     DiskLoads,
-    Each,
     Equilibrium,
     Extension,
     Gravity,
+    PerDisk,
     Scene,
     StaticSolver,
 )
@@ -76,7 +76,11 @@ def cantilever(disks: int, *loads: DiskLoad, damping: float = 0.0) -> Scene:
     mass = np.full(disks, 1.0 / disks)
     mass[-1] /= 2
     arm = Arm(
-        disks, 1.0 / disks, youngs_modulus=1.0, second_moment=1.0, each=Each(disk_mass=tuple(mass.tolist()))
+        disks,
+        1.0 / disks,
+        youngs_modulus=1.0,
+        second_moment=1.0,
+        each=PerDisk(disk_mass=tuple(mass.tolist())),
     )
     damped = (MaterialDamping(damping),) if damping else ()
     return Scene(arm, (Bending(), DiskLoads(loads), Inertia(), *damped))

@@ -95,7 +95,7 @@ def test_effect_left_out_leaves_no_trace_in_the_generated_source(name: str) -> N
 
 
 def acts_on_disks(effect: Effect) -> bool:
-    return effect.place in ("disk", "mass")
+    return effect.site in ("disk", "mass")
 
 
 def symbols_of(effect: Effect) -> SegmentSymbols | DiskSymbols:
@@ -134,7 +134,7 @@ def test_statics_knows_nothing_of_motion() -> None:
 def test_partial_velocities_are_partial_displacements(effect: Effect) -> None:
     """Kane 1985, sec. 2.14: for r(q), dr'/du_i = dr/dq_i, so at rest virtual power is virtual work."""
     at = symbols_of(effect)
-    for _, displacement in collect([effect], (effect.place,), at)[0][1]:
+    for _, displacement in collect([effect], (effect.site,), at)[0][1]:
         for i, coordinate in enumerate(at.coordinates):
             moving = partial_velocity(displacement, at.coordinates, at.rates, i)
             assert moving == partial_displacement(displacement, coordinate)
@@ -144,7 +144,7 @@ def test_partial_velocities_are_partial_displacements(effect: Effect) -> None:
 def test_only_effects_in_motion_depend_on_rates_or_accelerations(effect: Effect) -> None:
     at = symbols_of(effect)
     changing = {str(s) for s in (*at.rates, *at.accelerations)}
-    pairs = collect([effect], (effect.place,), at)[0][1]
+    pairs = collect([effect], (effect.site,), at)[0][1]
     symbols = {str(s) for pair in pairs for s in _free_symbols(pair.load)}
     assert bool(symbols & changing) == (not effect.acts_at_rest)
 

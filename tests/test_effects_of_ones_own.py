@@ -10,7 +10,7 @@ from whole_arm import difference_matrix, random_state, relative_error
 
 from statics import Arm, Bending, Cables, Extension, InputError, Scene, StaticSolver
 from statics.effects import Effect, Pair
-from statics.effects.effect import Account, Place
+from statics.effects.effect import Account, Site
 from statics.quantities import QUANTITIES, Quantity
 
 
@@ -34,7 +34,7 @@ class HardeningSpring(Spring):
     """Its force grows with the cube of a disk's deflection."""
 
     name: ClassVar[str] = "hardening_spring"
-    place: ClassVar[Place] = "disk"
+    site: ClassVar[Site] = "disk"
 
     def pairs(self, at: Any) -> list[Pair]:
         """One pair: the spring's force, deflection."""
@@ -46,7 +46,7 @@ class Sleeve(Spring):
     """A spring along each cable, from hole to hole."""
 
     name: ClassVar[str] = "sleeve"
-    place: ClassVar[Place] = "span"
+    site: ClassVar[Site] = "span"
 
     def pairs(self, at: Any) -> list[Pair]:
         """A pair for each cable: the spring's force, hole-to-hole length."""
@@ -68,7 +68,7 @@ class ReadsItsNumber(Spring):
     """It writes its own stiffness into its pair, where a kernel would keep it for every other."""
 
     name: ClassVar[str] = "reads_its_number"
-    place: ClassVar[Place] = "disk"
+    site: ClassVar[Site] = "disk"
     k: float = 300.0
 
     def pairs(self, at: Any) -> list[Pair]:

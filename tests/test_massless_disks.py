@@ -10,7 +10,7 @@ from continuum_dyn.scenario.profiles import Step
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation.accuracy import tip_distance
-from statics import Each, InputError, Scene
+from statics import InputError, PerDisk, Scene
 
 TIP = 3e-3
 """Mass of the last disk, kg."""
@@ -19,7 +19,7 @@ TIP = 3e-3
 def heavy_at_the_tip(others: float) -> Scene:
     """The paper's arm with that mass (kg) on each disk before the last."""
     scene = moving(rone2012())
-    each = Each(disk_mass=(others, others, others, TIP), disk_inertia=(0.0, 0.0, 0.0, 1e-7))
+    each = PerDisk(disk_mass=(others, others, others, TIP), disk_inertia=(0.0, 0.0, 0.0, 1e-7))
     return Scene(replace(scene.arm, each=each), scene.effects)
 
 

@@ -34,7 +34,7 @@ class Unitless:
     def __init__(self, case: Case, family: Family) -> None:
         scene = case.scene.at_rest if family is REST else case.scene
         self.passes = Passes(scene, family)
-        self.inputs = case.scene.held(case.drives)
+        self.inputs = case.scene.with_zero_rates(case.drives)
         gyration = np.sqrt(scene.arm.per_disk("second_moment") / scene.arm.per_disk("area"))[0]
         segments, dofs = self.passes.shape
         self.unit = np.tile([1.0, gyration][:dofs], segments)

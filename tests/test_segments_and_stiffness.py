@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import strategies as st
 from random_scenes import Case, Draw, at_rest, base, holds_for, holds_in, inextensible, near, within
 
-from statics import Arm, Bending, DiskLoad, DiskLoads, Each, Extension, Scene
+from statics import Arm, Bending, DiskLoad, DiskLoads, Extension, PerDisk, Scene
 
 FLEXURAL_RIGIDITY = 4.2e-3
 
@@ -19,7 +19,7 @@ def under_a_moment(spacings: list[float], moment: float, curvature: float, **tra
         disks=len(spacings),
         second_moment=FLEXURAL_RIGIDITY / 2.1e11,
         reference_curvature=curvature,
-        each=Each(disk_spacing=tuple(spacings)),
+        each=PerDisk(disk_spacing=tuple(spacings)),
         **traits,
     )
     load = DiskLoad(arm.disks, moment=moment)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from conftest import rone2012
 
-from statics import Arm, Bending, Each, Equilibrium, Gravity, Outcome, Scene, StaticSolver
+from statics import Arm, Bending, Equilibrium, Gravity, Outcome, PerDisk, Scene, StaticSolver
 from statics.kernels.loading import load, load_interpreted
 from statics.passes import search
 
@@ -64,7 +64,11 @@ def trap() -> StaticSolver:
     mass = np.full(64, 7.782e-4 * 4 / 64)
     mass[-1] /= 2
     arm = Arm.preset(
-        "rone2012", disks=64, disk_spacing=0.08 / 64, youngs_modulus=2.10e8, each=Each(disk_mass=tuple(mass))
+        "rone2012",
+        disks=64,
+        disk_spacing=0.08 / 64,
+        youngs_modulus=2.10e8,
+        each=PerDisk(disk_mass=tuple(mass)),
     )
     return StaticSolver(Scene(arm, (Bending(), Gravity((0.0, -9.81)))))
 

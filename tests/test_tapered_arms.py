@@ -16,9 +16,9 @@ from statics import (
     Cable,
     DiskLoad,
     DiskLoads,
-    Each,
     InputError,
     Outcome,
+    PerDisk,
     Scene,
     equilibrium,
 )
@@ -27,7 +27,7 @@ from statics.judges.exact_rod import exact_rod
 
 def stepped(moments: tuple[float, ...], stiffness: tuple[float, ...], spacing: tuple[float, ...]) -> Scene:
     """An inextensible arm without weight, with a moment on each disk."""
-    each = Each(disk_spacing=spacing, second_moment=stiffness)
+    each = PerDisk(disk_spacing=spacing, second_moment=stiffness)
     arm = Arm(len(spacing), disk_spacing=1.0, youngs_modulus=1.0, each=each)
     loads = tuple(DiskLoad(number, moment=moment) for number, moment in enumerate(moments, start=1))
     return Scene(arm, (Bending(), DiskLoads(loads)))
@@ -45,7 +45,7 @@ def test_lists_of_equal_numbers_are_one_number() -> None:
     plain = rone2012()
     arm = plain.arm
     names = ("disk_spacing", "youngs_modulus", "area", "second_moment", "disk_mass")
-    each = Each(**{name: (getattr(arm, name),) * 4 for name in names})
+    each = PerDisk(**{name: (getattr(arm, name),) * 4 for name in names})
     same = Scene(replace(arm, disk_mass=None, each=each), plain.effects)
     assert equilibrium(same, 1.0).tip == equilibrium(plain, 1.0).tip
 
@@ -99,4 +99,4 @@ def test_exact_rod_refuses_what_it_does_not_know() -> None:
 
 def test_cable_whose_holes_meet_in_the_unloaded_arm_is_refused() -> None:
     with pytest.raises(InputError, match="holes meet"):
-        Arm(2, 0.1, each=Each(reference_curvature=(1.0, 120.0)), cables=(Cable("upper", 0.01),))
+        Arm(2, 0.1, each=PerDisk(reference_curvature=(1.0, 120.0)), cables=(Cable("upper", 0.01),))

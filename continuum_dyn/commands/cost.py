@@ -10,7 +10,7 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.terminal.show import length, make_folder, plain_table, with_status
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,7 +38,7 @@ def cost(
     make_folder(out)
     measured = with_status(scenario.title, lambda progress: measure(scenario, progress))
     stem = out / f"{file.stem}_cost"
-    with held():
+    with defer_interruption():
         _write_csv(measured, stem.with_suffix(".csv"))
         _write_mesh_csv(measured, out / f"{file.stem}_cost_mesh.csv")
         write_cost(measured, stem.with_suffix(".h5"))

@@ -51,7 +51,7 @@ def explain(
     typer.echo("Effects in play")
     width = max((len(effect.name) for effect in scene.effects), default=0)
     for effect in scene.effects:
-        line = f"  {effect.name:<{width}} on each {effect.place:<8} {effect.source}"
+        line = f"  {effect.name:<{width}} on each {effect.site:<8} {effect.source}"
         typer.echo(fill(line, 79, subsequent_indent=" " * (width + 20)))
     found = _modes(scenario)
     show_additions(scenario, None if isinstance(found, InputError) else found)

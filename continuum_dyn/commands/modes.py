@@ -8,7 +8,7 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.terminal.show import make_folder, mode_row, plain_table
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
     from continuum_dyn.modes import RestModes
@@ -48,7 +48,7 @@ def modes(
     make_folder(out)
     found = modes_at_rest(scenario)
     stem = out / f"{file.stem}_modes"
-    with held():
+    with defer_interruption():
         _write_csv(found, stem.with_suffix(".csv"))
         plots.modes(found).savefig(stem.with_suffix(".png"), dpi=130)
     _show(found)

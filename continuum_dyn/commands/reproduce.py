@@ -8,7 +8,7 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder
 from continuum_dyn.commands.terminal.show import make_folder, plain_table
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,7 +31,7 @@ def reproduce(
 
     found = compute(paper)
     make_folder(out)
-    with held():
+    with defer_interruption():
         _write_table_2(found, out / f"{paper}_table_2.csv")
         _write_shapes(found, out / f"{paper}_shapes.csv")
         plots.rone2012(found).savefig(out / f"{paper}.png", dpi=130)

@@ -16,7 +16,7 @@ from continuum_dyn.commands.terminal.extras import MissingExtraError, naming_ext
 from continuum_dyn.commands.terminal.show import length, make_folder
 from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import InputError
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 from statics.support.stages import stage
 
 if TYPE_CHECKING:
@@ -90,7 +90,9 @@ def _load(files: list[Path], overrides: Sequence[str], out: Path) -> list[Job]:
 
 
 def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
-    with held():  # what Ctrl-C breaks off within the import of a library might come out as anything
+    with (
+        defer_interruption()
+    ):  # what Ctrl-C breaks off within the import of a library might come out as anything
         from continuum_dyn.record import read_log
         from continuum_dyn.record.logged_scenario import logged_scenario
         from continuum_dyn.scenario_files.reading import load_scenario
@@ -103,7 +105,7 @@ def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
 
 def answer(job: Job, as_json: bool) -> int:
     """Answer a scenario, log it and tell of it; the exit status."""
-    with held():  # so that what was computed is logged
+    with defer_interruption():  # so that what was computed is logged
         report = _answer(job, quiet=as_json)
         if as_json:
             typer.echo(json.dumps(report["record"]))

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT, NonNegative
 
 
@@ -20,7 +20,7 @@ class MassDamping:
     mass_damping_rate: NonNegative
 
     name: ClassVar[str] = "mass_damping"
-    place: ClassVar[Place] = "mass"
+    site: ClassVar[Site] = "mass"
     account: ClassVar[Account] = "dissipated_power"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()

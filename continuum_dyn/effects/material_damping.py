@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT, NonNegative
 
 
@@ -16,7 +16,7 @@ class MaterialDamping:
     retardation_time: NonNegative
 
     name: ClassVar[str] = "material_damping"
-    place: ClassVar[Place] = "segment"
+    site: ClassVar[Site] = "segment"
     account: ClassVar[Account] = "dissipated_power"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT, NonNegative
 
 
@@ -22,7 +22,7 @@ class QuadraticDrag:
     rotary_drag_per_speed_squared: NonNegative = 0.0
 
     name: ClassVar[str] = "quadratic_drag"
-    place: ClassVar[Place] = "disk"
+    site: ClassVar[Site] = "disk"
     account: ClassVar[Account] = "dissipated_power"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT
 
 
@@ -17,7 +17,7 @@ class RotaryInertia:
     """
 
     name: ClassVar[str] = "rotary_inertia"
-    place: ClassVar[Place] = "mass"
+    site: ClassVar[Site] = "mass"
     account: ClassVar[Account] = "kinetic_energy"
     acts_at_rest: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()

@@ -58,7 +58,7 @@ def choose(
 def check(scene: Scene, method: Method) -> None:
     """Raise ``InputError`` if the method cannot integrate the scene."""
     damping = dissipated_by(scene)
-    of_core = [effect for effect in scene.effects if effect.place == "segment" and effect.name in damping]
+    of_core = [effect for effect in scene.effects if effect.site == "segment" and effect.name in damping]
     if scene.arm.massless_nodes and not (METHODS[method].moves_massless_nodes and of_core):
         raise InputError(
             "some nodes carry no mass: only damping of the core can move them, and only method "

@@ -11,7 +11,7 @@ import numpy as np
 from continuum_dyn.record.log_format import PLOTTED, Column
 from statics.errors import LogError
 from statics.quantities import QUANTITIES
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 CHUNK = 512
 """Number of rows in a chunk of a growing dataset."""
@@ -24,7 +24,7 @@ TEXT = h5py.string_dtype()
 def whole_file(path: Path) -> Iterator[h5py.File]:
     """A new file that takes its place only when it is complete. Raises ``LogError``; then none is there."""
     new = path.with_name(path.name + ".new")
-    with held():
+    with defer_interruption():
         try:
             with h5py.File(new, "w", libver=VERSIONS) as file:
                 yield file

@@ -6,7 +6,7 @@
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
-from statics.arm import Each
+from statics.arm import PerDisk
 
 FORMAT = "continuum-dyn log"
 FORMAT_VERSION = 2
@@ -84,7 +84,7 @@ GROUPS: dict[str, dict[str, Column]] = {
         **_columns("hole_offset", "cable", "hole"),
         **_columns("friction cable_stiffness", "cable"),
         "anchor": Column(("cable",), Kind.INTEGER),
-        **_columns(" ".join(field.name for field in fields(Each)), "disk", required=False),
+        **_columns(" ".join(field.name for field in fields(PerDisk)), "disk", required=False),
     },
 }
 """Datasets by group; the first is the group's own scale. A log without a motion has no ``trajectory``, one

@@ -34,7 +34,7 @@ from continuum_dyn.record.writing import (
     write_scenario,
 )
 from statics.errors import LogError
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
     from continuum_dyn.simulation import Run
@@ -73,7 +73,7 @@ class StreamedLog:
 
     def add(self, block: "Trajectory") -> None:
         """Append a block, and flush it."""
-        with held(), self._os_errors_as_log_errors():
+        with defer_interruption(), self._os_errors_as_log_errors():
             if self._file is None:
                 self._create(block)
             else:
@@ -83,7 +83,7 @@ class StreamedLog:
 
     def finish(self, run: "Run") -> None:
         """Put the finished log in its place, and remove the unfinished one."""
-        with held(), self._os_errors_as_log_errors():
+        with defer_interruption(), self._os_errors_as_log_errors():
             if self.rows == 0 or run.trajectory is None or run.scenario.accuracy is not None:
                 self._close()
                 write_log(run, self.path)

@@ -14,7 +14,7 @@ from continuum_dyn.scenario_files.tables import (
     ScenarioFile,
     TableFile,
 )
-from statics.arm import PRESETS, Arm, Base, Cable, Each
+from statics.arm import PRESETS, Arm, Base, Cable, PerDisk
 from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
 from statics.errors import InputError, did_you_mean
 from statics.scene import Scene
@@ -76,7 +76,7 @@ def _arm(file: ScenarioFile) -> Arm:
         numbers["disk_spacing"] = sum(lists["disk_spacing"]) / len(lists["disk_spacing"])
     single = {name: value for name, value in numbers.items() if not isinstance(value, tuple)}
     subsegments, payloads = _subsegments(file.arm.subsegments), tuple(file.payloads)
-    return Arm(**single, subsegments=subsegments, each=Each(**lists), cables=cables, payloads=payloads)
+    return Arm(**single, subsegments=subsegments, each=PerDisk(**lists), cables=cables, payloads=payloads)
 
 
 def _subsegments(given: int | str | None) -> int:

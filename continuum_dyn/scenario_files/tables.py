@@ -10,7 +10,7 @@ from continuum_dyn.scenario.profiles import PROFILES, Constant, Ramp, Sine, Smoo
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, RampStudy, StepResponseStudy
 from continuum_dyn.scenario_files.csv_table import MAX_ROWS
-from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassPerDisk, Payload, PerDisk
+from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassList, Payload, PositiveList
 from statics.support.checked import STRICT, Line, NonNegative, Positive, Vector
 
 
@@ -75,10 +75,10 @@ def _number_kind(value: Any) -> str:
 
 
 PositiveEach = Annotated[
-    Annotated[Positive, Tag("number")] | Annotated[PerDisk, Tag("list")], Discriminator(_number_kind)
+    Annotated[Positive, Tag("number")] | Annotated[PositiveList, Tag("list")], Discriminator(_number_kind)
 ]
 MassEach = Annotated[
-    Annotated[NonNegative, Tag("number")] | Annotated[MassPerDisk, Tag("list")], Discriminator(_number_kind)
+    Annotated[NonNegative, Tag("number")] | Annotated[MassList, Tag("list")], Discriminator(_number_kind)
 ]
 NumberEach = Annotated[
     Annotated[float, Tag("number")]

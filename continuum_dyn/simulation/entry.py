@@ -18,7 +18,7 @@ from continuum_dyn.simulation.mesh import Mesh, extrapolate, search_mesh
 from continuum_dyn.simulation.resumption import Resumption
 from continuum_dyn.simulation.run import Run, Sink
 from statics.outcome import Outcome
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 TIME_PART = 0.25
 """Largest integration error of a mesh, over the accuracy; two extrapolated make nearly twice that."""
@@ -44,7 +44,7 @@ def simulate(
     """
     if budget is None:
         budget = Budget(scenario.solver.max_steps, scenario.solver.max_seconds)
-    with held() as interruption:
+    with defer_interruption() as interruption:
         if scenario.chooses_mesh and scenario.accuracy is not None:
             run = _choose_mesh(scenario, scenario.accuracy, progress, budget, sink)
         elif scenario.study.motion is not None:

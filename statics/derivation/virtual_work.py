@@ -165,7 +165,7 @@ def collect(effects: Iterable[Effect], kinds: Iterable[str], site: Any) -> Group
     return [
         (effect, [pair for pair in effect.pairs(site) if pair.displacement != 0])
         for effect in effects
-        if effect.place in kinds
+        if effect.site in kinds
     ]
 
 

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT
 
 
@@ -14,7 +14,7 @@ class Bending:
     """M = -(EJ / L0) (phi - k0 L0) along phi, on each segment."""
 
     name: ClassVar[str] = "bending"
-    place: ClassVar[Place] = "segment"
+    site: ClassVar[Site] = "segment"
     account: ClassVar[Account] = "elastic_energy"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ()

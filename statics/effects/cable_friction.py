@@ -6,7 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT
 
 SLIP_PART = 1e-6
@@ -24,7 +24,7 @@ class CableFriction:
     """
 
     name: ClassVar[str] = "cable_friction"
-    place: ClassVar[Place] = "span"
+    site: ClassVar[Site] = "span"
     account: ClassVar[Account] = "dissipated_power"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ()

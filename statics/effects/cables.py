@@ -6,7 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm, Cable
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT
 
 
@@ -15,7 +15,7 @@ class Cables:
     """F = -tau along the hole-to-hole length l, for each of the arm's cables, up to its anchor."""
 
     name: ClassVar[str] = "cables"
-    place: ClassVar[Place] = "span"
+    site: ClassVar[Site] = "span"
     account: ClassVar[Account] = "input_power"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ()

@@ -12,7 +12,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm, DiskNumber
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.errors import InputError
 from statics.support.checked import STRICT, Vector
 
@@ -49,7 +49,7 @@ class DiskLoads:
     loads: Annotated[tuple[DiskLoad, ...], Field(strict=False)] = field(default=())
 
     name: ClassVar[str] = "loads"
-    place: ClassVar[Place] = "disk"
+    site: ClassVar[Site] = "disk"
     account: ClassVar[Account] = "input_power"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ()

@@ -7,7 +7,7 @@ import numpy as np
 
 from statics.arm import Arm
 
-Place = Literal["segment", "span", "disk", "mass"]
+Site = Literal["segment", "span", "disk", "mass"]
 Account = Literal["elastic_energy", "gravity_energy", "kinetic_energy", "input_power", "dissipated_power"]
 
 
@@ -21,7 +21,7 @@ class Pair(NamedTuple):
 class Effect(Protocol):
     """A frozen dataclass of parameters with one verb: ``pairs``.
 
-    ``name`` is its key in scenario files; ``place`` says where the pairs stand (on each segment, on
+    ``name`` is its key in scenario files; ``site`` says where the pairs stand (on each segment, on
     each span from disk to disk, on each disk and other node, or on each mass: a disk's, a payload's, the
     core's own); ``account`` in which line of the power ledger its work is booked; ``acts_at_rest`` is False
     for what exists in motion only; ``coordinates`` are those that it frees on a segment, beside the bend
@@ -30,7 +30,7 @@ class Effect(Protocol):
     """
 
     name: ClassVar[str]
-    place: ClassVar[Place]
+    site: ClassVar[Site]
     account: ClassVar[Account]
     acts_at_rest: ClassVar[bool]
     coordinates: ClassVar[tuple[str, ...]]
@@ -39,7 +39,7 @@ class Effect(Protocol):
     source: ClassVar[str]
 
     def pairs(self, at: Any) -> list[Pair]:
-        """The pairs at one such place, by arithmetic on the symbols handed in.
+        """The pairs at one such site, by arithmetic on the symbols handed in.
 
         They never depend on the values of parameters, which reach the kernel by ``columns``: kernels are kept
         for scenes of the same effects, whatever their numbers.

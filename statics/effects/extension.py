@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT
 
 
@@ -18,7 +18,7 @@ class Extension:
     """
 
     name: ClassVar[str] = "extension"
-    place: ClassVar[Place] = "segment"
+    site: ClassVar[Site] = "segment"
     account: ClassVar[Account] = "elastic_energy"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ("elongation",)

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from pydantic.dataclasses import dataclass
 
 from statics.arm import Arm
-from statics.effects.effect import Account, Pair, Place
+from statics.effects.effect import Account, Pair, Site
 from statics.support.checked import STRICT, Vector
 
 
@@ -16,7 +16,7 @@ class Gravity:
     acceleration: Vector = (0.0, -9.81)
 
     name: ClassVar[str] = "gravity"
-    place: ClassVar[Place] = "mass"
+    site: ClassVar[Site] = "mass"
     account: ClassVar[Account] = "gravity_energy"
     acts_at_rest: ClassVar[bool] = True
     coordinates: ClassVar[tuple[str, ...]] = ()

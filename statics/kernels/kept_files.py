@@ -15,7 +15,7 @@ from pathlib import Path
 from platformdirs import user_cache_path
 
 from statics.errors import KernelCacheError
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 FOLDER = "CONTINUUM_DYN_CACHE"
 """The environment variable that names another folder."""
@@ -95,7 +95,7 @@ def read_sealed(path: Path) -> bytes | None:
 
 def write_sealed(path: Path, content: bytes) -> None:
     """Write a file whole. Raises ``KernelCacheError`` if it cannot be; then nothing is left behind."""
-    with held():
+    with defer_interruption():
         part = None
         try:
             handle, part = tempfile.mkstemp(dir=path.parent, suffix=".tmp")

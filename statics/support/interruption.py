@@ -32,17 +32,17 @@ class Interruption:
             yield item
 
 
-_held: Interruption | None = None
+_deferred: Interruption | None = None
 
 
 @contextmanager
-def held() -> Iterator[Interruption]:
+def defer_interruption() -> Iterator[Interruption]:
     """Ctrl-C waits for the end of the block; pressed again, it raises at once.
 
     Code within may look at ``asked``, end early, and clear it once it has answered.
     """
-    if _held is not None and threading.current_thread() is threading.main_thread():
-        yield from _nested(_held, raises=False)
+    if _deferred is not None and threading.current_thread() is threading.main_thread():
+        yield from _nested(_deferred, raises=False)
     else:
         yield from _outermost()
 
@@ -50,11 +50,11 @@ def held() -> Iterator[Interruption]:
 @contextmanager
 def allowed() -> Iterator[Interruption]:
     """Within what holds it, Ctrl-C raises ``KeyboardInterrupt``, also if it was pressed before."""
-    if _held is None or threading.current_thread() is not threading.main_thread():
+    if _deferred is None or threading.current_thread() is not threading.main_thread():
         yield Interruption()
     else:
-        _held.raise_if_asked()
-        yield from _nested(_held, raises=True)
+        _deferred.raise_if_asked()
+        yield from _nested(_deferred, raises=True)
 
 
 def _nested(interruption: Interruption, raises: bool) -> Iterator[Interruption]:
@@ -71,7 +71,7 @@ def _nested(interruption: Interruption, raises: bool) -> Iterator[Interruption]:
 
 
 def _outermost() -> Iterator[Interruption]:
-    global _held
+    global _deferred
     interruption = Interruption()
     previous = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(previous):
@@ -88,12 +88,12 @@ def _outermost() -> Iterator[Interruption]:
             told_before(unraisable)
 
     told_before = sys.unraisablehook
-    _held, sys.unraisablehook = interruption, on_swallowed
+    _deferred, sys.unraisablehook = interruption, on_swallowed
     signal.signal(signal.SIGINT, on_interrupt)
     try:
         yield interruption
     finally:
-        _held, sys.unraisablehook = None, told_before
+        _deferred, sys.unraisablehook = None, told_before
         signal.signal(signal.SIGINT, previous)
         if interruption.asked:
             previous(signal.SIGINT, None)

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from continuum_dyn.cli import app
 from continuum_dyn.record import read_log
 from statics import Outcome
-from statics.support.interruption import allowed, held
+from statics.support.interruption import allowed, defer_interruption
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
 
@@ -164,14 +164,14 @@ def test_interrupted_at_any_of_many_random_moments(tmp_path: Path) -> None:
 
 def test_what_holds_ctrl_c_comes_to_its_end() -> None:
     done = []
-    with pytest.raises(KeyboardInterrupt), held():  # noqa: PT012, what comes after the signal is the claim
+    with pytest.raises(KeyboardInterrupt), defer_interruption():  # noqa: PT012, what comes after the signal is the claim
         press()
         done.append("end")
     assert done == ["end"]
 
 
 def test_answered_ctrl_c_raises_nothing() -> None:
-    with held() as interruption:
+    with defer_interruption() as interruption:
         press()
         interruption.asked = False
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
@@ -179,7 +179,7 @@ def test_answered_ctrl_c_raises_nothing() -> None:
 
 def test_pressed_twice_it_raises_at_once() -> None:
     done = []
-    with pytest.raises(KeyboardInterrupt), held():  # noqa: PT012
+    with pytest.raises(KeyboardInterrupt), defer_interruption():  # noqa: PT012
         press()
         press()
         done.append("end")
@@ -187,7 +187,7 @@ def test_pressed_twice_it_raises_at_once() -> None:
 
 
 def test_where_it_is_allowed_it_raises_at_once_and_is_answered() -> None:
-    with held() as interruption:
+    with defer_interruption() as interruption:
         with pytest.raises(KeyboardInterrupt), allowed():  # noqa: PT012
             press()
             pytest.fail("not reached")
@@ -199,8 +199,8 @@ def test_where_it_is_allowed_it_raises_at_once_and_is_answered() -> None:
 
 def test_a_file_is_written_whole_even_where_ctrl_c_is_allowed() -> None:
     done = []
-    with held(), pytest.raises(KeyboardInterrupt), allowed():  # noqa: PT012
-        with held():
+    with defer_interruption(), pytest.raises(KeyboardInterrupt), allowed():  # noqa: PT012
+        with defer_interruption():
             press()
             done.append("written")
         pytest.fail("not reached")
@@ -209,7 +209,7 @@ def test_a_file_is_written_whole_even_where_ctrl_c_is_allowed() -> None:
 
 def test_items_end_where_it_was_pressed() -> None:
     seen = []
-    with held() as interruption:
+    with defer_interruption() as interruption:
         for item in interruption.until_asked(range(5)):
             seen.append(item)
             if item == 2:

@@ -33,11 +33,11 @@ from statics import (
     Cables,
     DiskLoad,
     DiskLoads,
-    Each,
     Equilibrium,
     Extension,
     Gravity,
     Payload,
+    PerDisk,
     Scene,
     StaticSolver,
 )
@@ -96,14 +96,14 @@ def arm(draw: Draw, **traits: Any) -> Arm:
     def each(strategy: st.SearchStrategy[float]) -> tuple[float, ...]:
         return tuple(draw(strategy) for _ in range(disks))
 
-    differs = Each(
+    differs = PerDisk(
         disk_spacing=each(near(0.02)),
         youngs_modulus=each(near(2.1e11)),
         disk_mass=each(near(7.8e-4)),
         reference_curvature=each(within(5.0)),
     )
     traits = {name: value(disks) if callable(value) else value for name, value in traits.items()}
-    return Arm.preset("rone2012", disks=disks, each=differs if draw(st.booleans()) else Each(), **traits)
+    return Arm.preset("rone2012", disks=disks, each=differs if draw(st.booleans()) else PerDisk(), **traits)
 
 
 def base(draw: Draw, *, moves: bool) -> Base:

@@ -26,7 +26,7 @@ from sympy.physics.mechanics import (
 )
 
 from continuum_dyn.effects import Inertia, MaterialDamping, RotaryInertia
-from statics.arm import Arm, Cable, Each
+from statics.arm import Arm, Cable, PerDisk
 from statics.effects import Bending, Cables, DiskLoad, DiskLoads, Extension, Gravity
 from statics.scene import Scene
 
@@ -183,7 +183,7 @@ def tapered_scene(disks: int, subsegments: int = 1) -> Scene:
         disks=disks,
         subsegments=subsegments,
         core_density=7800.0,
-        each=Each(**each, reference_curvature=curvature),
+        each=PerDisk(**each, reference_curvature=curvature),
         cables=(Cable("upper", tuple(offsets)), Cable("lower", -0.006, anchor=max(1, disks - 1))),
     )
     at_rest = (Bending(), Extension(), Gravity(), Cables())

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from statics.errors import LogError
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -16,7 +16,7 @@ DOTS_PER_INCH = 200
 def save(figure: "Figure", path: Path) -> None:
     """Write a figure; the suffix says as what. Raises ``LogError`` if it cannot be written."""
     try:
-        with held():
+        with defer_interruption():
             figure.savefig(path, dpi=DOTS_PER_INCH)
     except OSError as error:
         raise LogError(f"cannot write {path}: {error.strerror or error}.") from error

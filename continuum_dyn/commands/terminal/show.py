@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import LogError
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
     from continuum_dyn.modes import Mode
@@ -61,7 +61,7 @@ def make_folder(folder: Path) -> None:
     """Make a folder. Raises ``LogError`` if nothing can be written there."""
     probe = folder / ".writable"
     try:
-        with held():
+        with defer_interruption():
             folder.mkdir(parents=True, exist_ok=True)
             probe.touch()
             probe.unlink()

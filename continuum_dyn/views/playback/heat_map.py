@@ -16,7 +16,7 @@ SHOWN = ((-110.0, WIDTH + 50.0), (BOTTOM - 60.0, TOP + 20.0))
 """Ranges of the view: from left to right, from bottom to top."""
 MOST_TICKS = 5
 RED_GREEN_BLUE, BYTES = 2, 6
-"""Of a pixel, as rerun numbers what may be."""
+"""A pixel's format, by rerun's number."""
 
 
 def picture(playback: Playback, measures: Measures) -> np.ndarray:

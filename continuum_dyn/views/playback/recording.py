@@ -22,7 +22,7 @@ from continuum_dyn.views.playback.measures import Measures, measures_of
 from continuum_dyn.views.playback.playback import Playback, names_of, playback_of
 from continuum_dyn.views.rerun_core.stream import Stream, content
 from statics.errors import InputError, LogError
-from statics.support.interruption import held
+from statics.support.interruption import defer_interruption
 
 APPLICATION = "continuum-dyn"
 
@@ -35,7 +35,7 @@ def save(logs: Sequence[Log], path: Path) -> None:
     """
     recorded = record_logs(logs)
     part = path.with_name(path.name + ".part")
-    with held():
+    with defer_interruption():
         try:
             part.write_bytes(recorded)
             part.replace(path)

@@ -1,4 +1,4 @@
-"""What rerun (0.41) calls each column that is sent to it, and of which Arrow type it is.
+"""The names and Arrow types by which rerun (0.41) knows the columns that are sent to it.
 
 Arrays become Arrow's as they lie in memory: Arrow's own conversion loads pandas wherever that is installed.
 """

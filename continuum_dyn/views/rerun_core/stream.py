@@ -1,4 +1,4 @@
-"""What is sent to rerun goes to its compiled core: its Python layer takes longer to load than a run takes."""
+"""Streams to rerun's compiled core: its Python layer takes longer to load than a run takes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
