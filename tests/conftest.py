@@ -1,6 +1,7 @@
 """Scenes that the tests share: each new structure costs seconds to compile, so there are few."""
 
 import os
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,10 @@ from statics import (
 settings.register_profile("same_every_time", derandomize=True, deadline=None)
 settings.register_profile("explore", derandomize=False, deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same_every_time"))
+# A shell that starts a command in the background has it ignore Ctrl-C, and all that it starts: tests of Ctrl-C
+# would wait in vain.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 # Hypothesis also draws the numbers that stand in modules imported so far: then what is drawn would depend on
 # the order of tests, and change with any number in the sources.
 providers._get_local_constants = lambda: providers._local_constants
