@@ -18,7 +18,8 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from statics.kernels.compiled import compiled
-from statics.kernels.functions import BOOL, FLOAT, INT, ArrayKind, lower_function
+from statics.kernels.functions import lower_function
+from statics.kernels.kinds import BOOL, FLOAT, INT, ArrayKind
 from statics.kernels.lowering import LoweringError
 
 ANY = st.floats()

@@ -16,26 +16,15 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from statics.kernels.calling import address_of
-from statics.kernels.functions import (
-    BOOL,
-    FLOAT,
-    INT,
-    SCALAR_KINDS,
-    ArrayKind,
-    Kind,
-    TupleKind,
-    cells,
-    declared_kinds,
-    lower_function,
-    named,
-)
+from statics.kernels.functions import declared_kinds, lower_function
 from statics.kernels.kept_files import kernel_folder, read_sealed, write_sealed
+from statics.kernels.kinds import BOOL, FLOAT, INT, SCALAR_KINDS, ArrayKind, Kind, TupleKind, cells, named
 from statics.kernels.machine_code import MachineCode, compile_text, machine_name
 from statics.support.stages import stage
 
 SHARED = (Path(__file__).parent, Path(__file__).parent.parent / "passes")
 """Folders of what compiled functions everywhere may call."""
-FORMATS = {FLOAT: "d", INT: "q", BOOL: "?7x", "ptr": "q"}
+FORMATS = {FLOAT: "d", INT: "q", BOOL: "?", "ptr": "q"}
 ACCEPTED = {FLOAT: Real, INT: Integral, BOOL: bool}
 """What a parameter that is annotated as a number takes."""
 

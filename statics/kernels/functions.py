@@ -17,7 +17,6 @@ import ast
 import inspect
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import FunctionType, ModuleType
@@ -26,6 +25,19 @@ from typing import Any
 import numpy as np
 
 from statics.kernels.calling import run
+from statics.kernels.kinds import (
+    BOOL,
+    FLOAT,
+    INT,
+    NAMES,
+    SCALAR_KINDS,
+    ArrayKind,
+    Kind,
+    TupleKind,
+    Value,
+    cells,
+    named,
+)
 from statics.kernels.lowering import (
     COMPARISONS,
     INTRINSICS,
@@ -33,13 +45,10 @@ from statics.kernels.lowering import (
     LIBRARY,
     OPERATIONS,
     LoweringError,
+    declarations,
     float_text,
 )
 
-FLOAT, INT, BOOL = "double", "i64", "i1"
-SCALAR_KINDS = {bool: BOOL, int: INT, float: FLOAT}
-"""LLVM's types of numbers, by the annotations that name them."""
-NAMES = {FLOAT: "a float", INT: "an integer", BOOL: "a bool", None: "nothing"}
 INTEGER_OPERATIONS = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 FLOAT_COMPARISONS = {ast.Eq: "fcmp oeq", ast.NotEq: "fcmp une"} | {
     comparison: f"fcmp {how}" for comparison, how in COMPARISONS.items()
@@ -53,92 +62,17 @@ BUILTINS = {function.__name__: function for function in (min, max, abs, int, flo
 FUNCTIONS = BUILTINS | {name: getattr(math, name) for name in ("isfinite", *INTRINSICS, *LIBRARY)}
 LARGEST_INTEGER = 2**63 - 1
 NUMBER_BYTES = 8
-RUNTIME = "\n".join(
-    [
-        *(f"declare double @{name}.f64(double)" for name in INTRINSICS.values()),
-        *(
-            f"declare double @{name}({', '.join([FLOAT] * count)}) nounwind willreturn memory(none)"
-            for name, count in LIBRARY.items()
-        ),
-        "declare double @pow(double, double) nobuiltin nounwind willreturn memory(none)",  # else not Python's
-        "declare ptr @calloc(i64, i64)",
-        "declare void @free(ptr)",
-    ]
-)
+RUNTIME = [
+    *declarations(),
+    "declare double @pow(double, double) nobuiltin nounwind willreturn memory(none)",  # else not Python's
+    "declare ptr @calloc(i64, i64)",
+    "declare void @free(ptr)",
+]
 ALLOWED = (
     "Allowed: floats, integers, bools, arrays, tuples of these; assignments, if, while, for over a range, "
     "return of numbers, arithmetic and comparisons, indices and slices without gaps, reshape, np.empty and "
     "np.zeros outside of loops, min, max, abs, int, float, len, math, and calls of compiled functions."
 )
-
-
-@dataclass(frozen=True)
-class ArrayKind:
-    """Kind of an array of floats: its number of axes."""
-
-    axes: int
-
-
-@dataclass(frozen=True)
-class TupleKind:
-    """Kind of a tuple: those of its parts, and their names if it has such."""
-
-    parts: "tuple[Kind, ...]"
-    names: tuple[str, ...] = ()
-
-
-Kind = str | ArrayKind | TupleKind
-
-
-def cells(kind: Kind | None) -> list[str]:
-    """LLVM's types of what a value is made of: an array of its address and its shape."""
-    match kind:
-        case None:
-            return []
-        case ArrayKind(axes):
-            return ["ptr", *[INT] * axes]
-        case TupleKind(parts):
-            return [cell for part in parts for cell in cells(part)]
-    return [kind]
-
-
-def named(kind: Kind | None) -> str:
-    """Words for a kind."""
-    match kind:
-        case ArrayKind(axes):
-            return f"an array with {axes} axes"
-        case TupleKind(parts):
-            return f"a tuple ({', '.join(map(named, parts))})"
-    return NAMES[kind]
-
-
-@dataclass(frozen=True)
-class Value:
-    """A value in the making: its kind, and LLVM's names of its cells."""
-
-    kind: Kind
-    cells: tuple[str, ...]
-
-    @property
-    def typed(self) -> list[tuple[str, str]]:
-        """Every cell with its type."""
-        return list(zip(cells(self.kind), self.cells, strict=True))
-
-    @property
-    def parts(self) -> "list[Value]":
-        """The parts of a tuple; of anything else none."""
-        left, found = list(self.cells), []
-        for kind in self.kind.parts if isinstance(self.kind, TupleKind) else ():
-            count = len(cells(kind))
-            found.append(Value(kind, tuple(left[:count])))
-            del left[:count]
-        return found
-
-    @property
-    def literal(self) -> int | None:
-        """The integer that stands in the text, None if this is none."""
-        known = self.kind == INT and self.cells[0].lstrip("-").isdigit()
-        return int(self.cells[0]) if known else None
 
 
 def declared_kinds(function: Callable[..., Any]) -> dict[str, str | None]:
@@ -156,26 +90,30 @@ def declared_kinds(function: Callable[..., Any]) -> dict[str, str | None]:
 def lower_function(function: Callable[..., Any], kinds: Sequence[Kind]) -> tuple[str, Kind | None]:
     """LLVM's text of a function for arguments of these kinds, and the kind of its result.
 
-    The text holds ``void entry(ptr arguments, ptr results)``: both point to cells of 8 bytes.
+    The text holds ``void entry(ptr arguments, ptr results)``: cells as in C's structures.
     Raises ``LoweringError`` for what cannot be lowered.
     """
-    unit, code = _Unit(), _Lines()
+    unit = _Unit()
     try:
         name, result = unit.lower(function, kinds)
     except RecursionError:
         line = function.__code__.co_firstlineno
         raise _refusal(function, line, function.__name__, "is nested too deeply") from None
-    arguments = []
-    for number, cell in enumerate(cell for kind in kinds for cell in cells(kind)):
-        place = code.assign(f"getelementptr i64, ptr %arguments, i64 {number}")
-        given = code.assign(f"load {INT if cell == BOOL else cell}, ptr {place}")
-        arguments.append((cell, code.assign(f"icmp ne i64 {given}, 0") if cell == BOOL else given))
-    for number, (cell, given) in enumerate(code.called(name, result, arguments)):
-        place = code.assign(f"getelementptr i64, ptr %results, i64 {number}")
-        wide = code.assign(f"zext i1 {given} to i64") if cell == BOOL else given
-        code.emit(f"store {INT if cell == BOOL else cell} {wide}, ptr {place}")
-    head = "define void @entry(ptr %arguments, ptr %results) nounwind {"
-    return "\n".join([RUNTIME, *unit.texts, head, *code.lines, "  ret void", "}"]), result
+    given = _parameters(kinds)
+    whole = _struct(cells(given.kind))
+    parts = [f"  {cell} = extractvalue {whole} %given, {k}" for k, cell in enumerate(given.cells)]
+    call = f"call {_returned(result)} @{name}({given.text})"
+    called = [f"  %found = {call}", f"  store {_returned(result)} %found, ptr %results"]
+    lines = [
+        *(*RUNTIME, *unit.texts, "define void @entry(ptr %arguments, ptr %results) nounwind {"),
+        *(
+            f"  %given = load {whole}, ptr %arguments",
+            *parts,
+            *(called if result is not None else [f"  {call}"]),
+        ),
+        *("  ret void", "}"),
+    ]
+    return "\n".join(lines), result
 
 
 class _Unit:
@@ -199,60 +137,25 @@ class _Unit:
         return self.known[key]
 
 
-class _Lines:
-    """Lines of LLVM's text."""
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        self.count = 0
-
-    def emit(self, line: str) -> None:
-        """Add a line."""
-        self.lines.append(f"  {line}")
-
-    def assign(self, operation: str) -> str:
-        """The name of a new value."""
-        self.count += 1
-        self.emit(f"%v{self.count} = {operation}")
-        return f"%v{self.count}"
-
-    def called(
-        self, name: str, result: Kind | None, arguments: Sequence[tuple[str, str]]
-    ) -> list[tuple[str, str]]:
-        """The cells, with their types, of what a function of the module returns."""
-        call = f"call {_returned(result)} @{name}({', '.join(map(' '.join, arguments))})"
-        if result is None:
-            self.emit(call)
-            return []
-        whole = self.assign(call)
-        numbered = enumerate(cells(result))
-        return [
-            (cell, self.assign(f"extractvalue {_returned(result)} {whole}, {number}"))
-            for number, cell in numbered
-        ]
-
-
-class _Code(_Lines):
+class _Code:
     """Lines of one function, with its variables on the stack: LLVM turns them into registers."""
 
     def __init__(self, unit: _Unit, function: Callable[..., Any], kinds: Sequence[Kind]) -> None:
-        super().__init__()
         self.unit, self.function = unit, function
         code = function.__code__
         self.local = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
         self.stack: list[str] = []
+        self.lines: list[str] = []
+        self.count = 0
         self.variables: dict[str, Value] = {}
         self.loops: list[tuple[str, str]] = []
         self.reached: set[str] = set()
         self.ended = False
         self.results: list[Kind | None] = []
         self.workspaces: list[str] = []
-        self.parameters: list[tuple[str, str]] = []
-        tree = _definition(function)
-        for name, kind in zip(declared_kinds(function), kinds, strict=True):
-            first = len(self.parameters)
-            self.parameters += [(cell, f"%p{first + k}") for k, cell in enumerate(cells(kind))]
-            self.set_name(name, Value(kind, tuple(cell for _, cell in self.parameters[first:])), tree)
+        tree, self.parameters = _definition(function), _parameters(kinds)
+        for name, value in zip(declared_kinds(function), self.parameters.parts, strict=True):
+            self.set_name(name, value, tree)
         self.statements(tree.body)
         if not self.ended:
             self.give_back(None, tree.body[-1])
@@ -264,11 +167,24 @@ class _Code(_Lines):
 
     def text(self, name: str) -> str:
         """The function's text."""
-        parameters = ", ".join(map(" ".join, self.parameters))
-        head = f"define internal {_returned(self.result)} @{name}({parameters}) nounwind {{"
+        head = f"define internal {_returned(self.result)} @{name}({self.parameters.text}) nounwind {{"
         return "\n".join([head, *self.stack, *self.lines, "}"])
 
     # lines
+
+    def emit(self, line: str) -> None:
+        """Add a line."""
+        self.lines.append(f"  {line}")
+
+    def assign(self, operation: str) -> str:
+        """The name of a new cell."""
+        self.count += 1
+        self.emit(f"%v{self.count} = {operation}")
+        return f"%v{self.count}"
+
+    def new(self, kind: str, operation: str) -> Value:
+        """A new number."""
+        return Value(kind, (self.assign(operation),))
 
     def slot(self, kind: str) -> str:
         """A place on the stack for one cell."""
@@ -326,7 +242,7 @@ class _Code(_Lines):
                 self.set(target, self.arithmetic(node, self.value(target), self.value(node.value)))
             case ast.AugAssign(target=ast.Subscript() as target):
                 place = self.place(target)
-                before = Value(FLOAT, (self.assign(f"load double, ptr {place}"),))
+                before = self.new(FLOAT, f"load double, ptr {place}")
                 self.store(place, self.arithmetic(node, before, self.value(node.value)), node)
             case ast.If():
                 self.branch(node)
@@ -335,7 +251,7 @@ class _Code(_Lines):
             case ast.For(target=ast.Name(), iter=ast.Call(func=function, args=arguments, keywords=[])) if (
                 self.known(function) is range and not node.orelse
             ):
-                self.count_over(node, node.target, arguments)
+                self.count_over(node, arguments)
             case ast.Break() | ast.Continue():
                 again, after = self.loops[-1]
                 self.go(after if isinstance(node, ast.Break) else again)
@@ -358,46 +274,40 @@ class _Code(_Lines):
 
     def repeat(self, node: ast.While) -> None:
         """Lower a ``while``."""
-        again, inside, after = self.label(), self.label(), self.label()
-        self.loops.append((again, after))
-        self.begin(again)
+        head, inside, after = self.label(), self.label(), self.label()
+        self.loops.append((head, after))
+        self.begin(head)
         if not (isinstance(node.test, ast.Constant) and node.test.value is True):
             self.fork(self.truth(node.test), inside, after)
         self.begin(inside)
-        self.statements(node.body)
-        self.go(again)
-        self.loops.pop()
-        self.begin(after)
+        self.rest_of_loop(node.body)
 
-    def count_over(self, node: ast.For, target: ast.expr, arguments: Sequence[ast.expr]) -> None:
+    def count_over(self, node: ast.For, arguments: Sequence[ast.expr]) -> None:
         """Lower ``for name in range(...)``, with a step of a constant size."""
         values = [self.value(argument) for argument in arguments]
-        if len(values) == 1:
-            values = [_constant(0), *values]
-        if len(values) == 2:
-            values = [*values, _constant(1)]
-        change = values[2].literal if len(values) == 3 else None
-        if not change:
+        values = [*([_constant(0)] if len(values) == 1 else []), *values, _constant(1)]
+        step = values[2].literal if len(arguments) in (1, 2, 3) else None
+        if not step:
             raise self.refusal(node.iter, "must count up or down by a constant")
         first, end = (self.converted(value, INT, node.iter) for value in values[:2])
-        head, inside, again, after = self.label(), self.label(), self.label(), self.label()
-        counter = f"counter {head}"
-        self.set_name(counter, Value(INT, (first,)), node)
+        head, inside, after = self.label(), self.label(), self.label()
+        self.set_name(f"counter {head}", Value(INT, (first,)), node)
+        self.loops.append((head, after))
         self.begin(head)
-        now = self.variable(counter)
-        self.fork(
-            self.assign(f"icmp {'slt' if change > 0 else 'sgt'} i64 {now.cells[0]}, {end}"), inside, after
-        )
+        now = self.variable(f"counter {head}")
+        more = self.assign(f"icmp {'slt' if step > 0 else 'sgt'} i64 {now.cells[0]}, {end}")
+        self.fork(more, inside, after)
         self.begin(inside)
-        self.set(target, now)
-        self.loops.append((again, after))
-        self.statements(node.body)
+        self.set_name(f"counter {head}", self.new(INT, f"add nsw i64 {now.cells[0]}, {step}"), node)
+        self.set(node.target, now)
+        self.rest_of_loop(node.body)
+
+    def rest_of_loop(self, body: Sequence[ast.stmt]) -> None:
+        """Lower a loop's body and its way back."""
+        again, after = self.loops[-1]
+        self.statements(body)
+        self.go(again)
         self.loops.pop()
-        self.begin(again)
-        if not self.ended:
-            following = self.assign(f"add nsw i64 {now.cells[0]}, {change}")
-            self.set_name(counter, Value(INT, (following,)), node)
-        self.go(head)
         self.begin(after)
 
     def give_back(self, value: Value | None, node: ast.AST) -> None:
@@ -424,9 +334,7 @@ class _Code(_Lines):
         match target:
             case ast.Name(id=name):
                 self.set_name(name, value, target)
-            case ast.Tuple(elts=parts) if isinstance(value.kind, TupleKind) and len(parts) == len(
-                value.parts
-            ):
+            case ast.Tuple(elts=parts) if parts and len(parts) == len(value.parts):
                 for part, given in zip(parts, value.parts, strict=True):
                     self.set(part, given)
             case ast.Subscript():
@@ -448,10 +356,8 @@ class _Code(_Lines):
 
     def variable(self, name: str) -> Value:
         """The value of a variable."""
-        variable = self.variables[name]
-        return Value(
-            variable.kind, tuple(self.assign(f"load {cell}, ptr {slot}") for cell, slot in variable.typed)
-        )
+        kept = self.variables[name]
+        return Value(kept.kind, tuple(self.assign(f"load {cell}, ptr {slot}") for cell, slot in kept.typed))
 
     def place(self, target: ast.Subscript) -> str:
         """Address of an array's number."""
@@ -484,7 +390,7 @@ class _Code(_Lines):
             case ast.Subscript():
                 return self.subscript(node)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
-                return Value(BOOL, (self.assign(f"xor i1 {self.truth(operand)}, true"),))
+                return self.new(BOOL, f"xor i1 {self.truth(operand)}, true")
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return self.negative(self.value(operand), node)
             case ast.BinOp(left=left, right=right):
@@ -534,7 +440,7 @@ class _Code(_Lines):
             return owner.parts[number]
         viewed = self.view(owner, node)
         if viewed.kind == ArrayKind(0):
-            return Value(FLOAT, (self.assign(f"load double, ptr {viewed.cells[0]}"),))
+            return self.new(FLOAT, f"load double, ptr {viewed.cells[0]}")
         return viewed
 
     def view(self, array: Value, node: ast.Subscript) -> Value:
@@ -545,36 +451,32 @@ class _Code(_Lines):
         pointer, *shape = array.cells
         for index in indices:
             kept = []
-            if isinstance(index, ast.Slice):
-                if index.step is not None or index is not indices[-1]:
-                    raise self.refusal(node, "is not without gaps")
-                first = self.counted(index.lower) if index.lower is not None else "0"
+            if not isinstance(index, ast.Slice):
+                first = self.counted(index)
+            elif index.step is None and index is indices[-1]:
+                first = self.counted(index.lower or ast.Constant(0))
                 end = self.counted(index.upper) if index.upper is not None else shape[0]
                 kept = [self.assign(f"sub nsw i64 {end}, {first}")]
             else:
-                first = self.counted(index)
+                raise self.refusal(node, "is not without gaps")
             inner = self.product([first, *shape[1:]])
             pointer = self.assign(f"getelementptr inbounds double, ptr {pointer}, i64 {inner}")
             shape = [*kept, *shape[1:]]
         return Value(ArrayKind(len(shape)), (pointer, *shape))
 
-    def counted(self, node: ast.expr) -> str:
-        """An index, the end of a slice, or an array's length: an integer that is not seen to be negative."""
-        value = self.value(node)
+    def counted(self, node: ast.expr, given: Value | None = None) -> str:
+        """An index, the end of a slice, or a length: an integer that is not seen to be negative."""
+        value = given or self.value(node)
         if value.kind != INT or (value.literal or 0) < 0:
             raise self.refusal(node, "is no integer from 0 on")
         return value.cells[0]
 
-    def shape(self, node: ast.expr) -> list[str]:
-        """The shape that an integer or a tuple of integers gives."""
-        if isinstance(node, ast.Tuple):
-            return [self.counted(part) for part in node.elts]
-        value = self.value(node)
-        if value.kind == INT:
-            return [self.counted(node)]
-        if not isinstance(value.kind, TupleKind) or any(part != INT for part in value.kind.parts):
-            raise self.refusal(node, "is no shape")
-        return list(value.cells)
+    def shaped(self, pointer: str, node: ast.Call) -> Value:
+        """An array there, of the shape that a call's only argument gives: an integer or a tuple of them."""
+        value = self.value(node.args[0])
+        lengths = value.parts if isinstance(value.kind, TupleKind) else [value]
+        shape = [self.counted(node.args[0], length) for length in lengths]
+        return Value(ArrayKind(len(shape)), (pointer, *shape))
 
     def product(self, factors: Sequence[str]) -> str:
         """The product of integers; 1 of none."""
@@ -612,14 +514,14 @@ class _Code(_Lines):
             return self.power(node, left, right)
         kind, (first, second) = self.alike([left, right], node)
         if kind == INT and operation in INTEGER_OPERATIONS:
-            return Value(INT, (self.assign(f"{INTEGER_OPERATIONS[operation]} nsw i64 {first}, {second}"),))
+            return self.new(INT, f"{INTEGER_OPERATIONS[operation]} nsw i64 {first}, {second}")
         if kind == INT and operation in (ast.FloorDiv, ast.Mod):
             return Value(INT, (self.floored(first, second, operation is ast.Mod),))
         if operation not in OPERATIONS:
             raise self.refusal(node)
         if kind == INT:
             first, second = (self.assign(f"sitofp i64 {value} to double") for value in (first, second))
-        return Value(FLOAT, (self.assign(f"{OPERATIONS[operation]} double {first}, {second}"),))
+        return self.new(FLOAT, f"{OPERATIONS[operation]} double {first}, {second}")
 
     def floored(self, first: str, second: str, remainder: bool) -> str:
         """Quotient of integers rounded down, or what it leaves, which has the divisor's sign."""
@@ -641,7 +543,7 @@ class _Code(_Lines):
             if base.kind == exponent.kind == INT:
                 raise self.refusal(node, "is no power by a small integer that stands in the text")
             _, (first, second) = self.alike([base, exponent], node)
-            return Value(FLOAT, (self.assign(f"call double @pow(double {first}, double {second})"),))
+            return self.new(FLOAT, f"call double @pow(double {first}, double {second})")
         kind, (square,) = self.alike([base], node)
         times, result = "fmul double" if kind == FLOAT else "mul nsw i64", ""
         while left:
@@ -667,7 +569,7 @@ class _Code(_Lines):
         how = (INTEGER_COMPARISONS if kind == INT else FLOAT_COMPARISONS).get(operation)
         if how is None:
             raise self.refusal(node)
-        return Value(BOOL, (self.assign(f"{how} {kind} {first}, {second}"),))
+        return self.new(BOOL, f"{how} {kind} {first}, {second}")
 
     def joined(self, node: ast.BoolOp) -> Value:
         """Whether all hold, or any: the rest is not computed once that is known."""
@@ -701,7 +603,9 @@ class _Code(_Lines):
         if function is np.empty or function is np.zeros:
             return self.workspace(node)
         if function is None and isinstance(node.func, ast.Attribute) and node.func.attr == "reshape":
-            return self.reshaped(self.value(node.func.value), node)
+            array = self.value(node.func.value)
+            if isinstance(array.kind, ArrayKind) and len(node.args) == 1:
+                return self.shaped(array.cells[0], node)
         values = [self.value(argument) for argument in node.args]
         if function is run:
             return self.run_pass(node, values)
@@ -727,7 +631,7 @@ class _Code(_Lines):
             case "int", ["i64"]:
                 return values[0]
             case "int", ["double"]:
-                return Value(INT, (self.assign(f"fptosi double {values[0].cells[0]} to i64"),))
+                return self.new(INT, f"fptosi double {values[0].cells[0]} to i64")
         if NUMBERS.get(name) != len(values):
             raise self.refusal(node)
         floats = [self.converted(value, FLOAT, node) for value in values]
@@ -737,10 +641,10 @@ class _Code(_Lines):
             size = self.assign(f"call double @llvm.fabs.f64(double {floats[0]})")
             if name == "abs":
                 return Value(FLOAT, (size,))
-            return Value(BOOL, (self.assign(f"fcmp olt double {size}, {float_text(math.inf)}"),))
+            return self.new(BOOL, f"fcmp olt double {size}, {float_text(math.inf)}")
         symbol = f"{INTRINSICS[name]}.f64" if name in INTRINSICS else name
         arguments = ", ".join(f"double {number}" for number in floats)
-        return Value(FLOAT, (self.assign(f"call double @{symbol}({arguments})"),))
+        return self.new(FLOAT, f"call double @{symbol}({arguments})")
 
     def extreme(self, kind: str, numbers: Sequence[str], how: str) -> Value:
         """The largest or smallest of some numbers, as Python finds it."""
@@ -764,8 +668,12 @@ class _Code(_Lines):
             for value, kind in zip(values, declared.values(), strict=True)
         ]
         name, result = self.unit.lower(function, [value.kind for value in given])
-        found = self.called(name, result, [cell for value in given for cell in value.typed])
-        return None if result is None else Value(result, tuple(cell for _, cell in found))
+        call = f"call {_returned(result)} @{name}({', '.join(value.text for value in given if value.cells)})"
+        if result is None:
+            return self.emit(call)
+        whole, count = self.assign(call), len(cells(result))
+        parts = (self.assign(f"extractvalue {_returned(result)} {whole}, {k}") for k in range(count))
+        return Value(result, tuple(parts))
 
     def run_pass(self, node: ast.Call, values: list[Value]) -> None:
         """Call a pass by its address, with the addresses of its arrays."""
@@ -781,19 +689,13 @@ class _Code(_Lines):
         """A new array, which ends with the function."""
         if self.loops or len(node.args) != 1:
             raise self.refusal(node, "is not by its shape alone, or stands in a loop")
-        shape, slot = self.shape(node.args[0]), self.slot("ptr")
+        slot = self.slot("ptr")
         self.stack.append(f"  store ptr null, ptr {slot}")
         self.workspaces.append(slot)
+        shape = self.shaped("", node).cells[1:]
         pointer = self.assign(f"call ptr @calloc(i64 {self.product(shape)}, i64 {NUMBER_BYTES})")
         self.emit(f"store ptr {pointer}, ptr {slot}")
         return Value(ArrayKind(len(shape)), (pointer, *shape))
-
-    def reshaped(self, array: Value, node: ast.Call) -> Value:
-        """The same numbers in another shape."""
-        if not isinstance(array.kind, ArrayKind) or len(node.args) != 1:
-            raise self.refusal(node)
-        shape = self.shape(node.args[0])
-        return Value(ArrayKind(len(shape)), (array.cells[0], *shape))
 
 
 def _refusal(function: Callable[..., Any], line: int, text: str, why: str) -> LoweringError:
@@ -831,6 +733,15 @@ def _constant(value: float) -> Value:
     return Value(kind, (float_text(value) if kind == FLOAT else str(value).lower(),))
 
 
+def _struct(types: Sequence[str]) -> str:
+    return f"{{ {', '.join(types)} }}"
+
+
 def _returned(kind: Kind | None) -> str:
     """LLVM's type of what a function returns."""
-    return "void" if kind is None else f"{{ {', '.join(cells(kind))} }}"
+    return "void" if kind is None else _struct(cells(kind))
+
+
+def _parameters(kinds: Sequence[Kind]) -> Value:
+    kind = TupleKind(tuple(kinds))
+    return Value(kind, tuple(f"%p{number}" for number in range(len(cells(kind)))))
