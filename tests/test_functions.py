@@ -236,6 +236,8 @@ def test_constants_calls_and_names(x: float, n: int, row: np.ndarray) -> None:
     assert_same(c.nothing, row, n)
     assert_same(c.numbers, x, n)
     assert_same(c.single, x)
+    assert_same(c.fixed)
+    assert_same(c.empty, ())
     assert_same(c.entry, x, n, row, x + 1.0, x - 1.0, 5)
     assert_same(c.hides, x, n, 2.0 * x, 3)
     assert_same(c.deep, x, x + n)
@@ -690,6 +692,29 @@ def test_arrays_that_are_only_to_be_read_are_read() -> None:
     row = np.arange(1.0, 3.0)
     row.setflags(write=False)
     assert typed(0.5, 2, True, row, RIGHT[4]) == (2.5, 6, True, 1.0, 0.25)
+
+
+def test_functions_of_the_same_name_in_a_file_are_told_apart(tmp_path: Path) -> None:
+    """Both are kept."""
+    text = "@compiled\ndef f(x):\n    return x\n\ng = f\n\n@compiled\ndef f(x):\n    return -x\n"
+    text += "\nfirst, second = g(1.0), f(1.0)\n\ndef f():\n    return first, second\n"
+    assert defined(text, tmp_path)() == (1.0, -1.0)
+
+
+def test_functions_of_some_arguments_bound(tmp_path: Path) -> None:
+    """Arrays among them are seen as they are at the call, and kept."""
+    row = np.ones(2)
+    bound = typed.bind(*RIGHT[:3], row)
+    row[0] = 7.0
+    assert bound(RIGHT[4]) == typed(*RIGHT[:3], row, RIGHT[4])
+    with pytest.raises(TypeError, match="typed takes 5 arguments, not 4"):
+        bound()
+    with pytest.raises(TypeError, match="takes numbers as annotated"):
+        bound(FLAT(3, "x", True))
+    assert (
+        defined("@compiled\ndef f(row, n: int):\n    return row[n]\n", tmp_path).bind(np.arange(9.0))(8)
+        == 8.0
+    )
 
 
 def test_kinds_are_told_in_words() -> None:

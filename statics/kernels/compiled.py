@@ -130,7 +130,8 @@ class _Code:
     def __init__(self, function: Callable[..., Any], kinds: tuple[Kind, ...]) -> None:
         file = Path(function.__code__.co_filename)
         name = f"{file.stem}.{function.__name__}"
-        shape = repr((name, _digest(file.parent), kinds, machine_name()))
+        line = function.__code__.co_firstlineno
+        shape = repr((name, line, _digest(file.parent), kinds, machine_name()))
         path = kernel_folder() / f"{name}.{hashlib.sha256(shape.encode()).hexdigest()[:24]}"
         kept = read_sealed(path)
         if kept is None:
@@ -170,7 +171,7 @@ def _compile(function: Callable[..., Any], kinds: tuple[Kind, ...]) -> bytes:
     text, result = lower_function(function, kinds)
     shape = "nothing" if result is None else "several" if isinstance(result, TupleKind) else "one"
     head = " ".join([shape, *(cells(result) if result is not None else ())])
-    return head.encode() + b"\n" + compile_text(text)
+    return head.encode() + b"\n" + compile_text(text, multiply_loops=False)
 
 
 @cache

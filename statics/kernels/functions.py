@@ -7,10 +7,10 @@ returns of numbers, and calls of other such functions, of passes by ``run``, and
 ``array[i]`` and ``array[a:b]`` are views; ``np.empty`` and ``np.zeros`` make workspaces, which end with the
 function. Anything else is refused by name.
 
-Nothing is checked when it runs. Indices and the ends of slices lie within the array, and negative ones do not
-count from its end; integers have 64 bits, and 53 where they are divided, or compared with floats; a divisor
-that is an integer is not zero, and a float's zero gives what the processor does. Additions are neither
-reordered nor contracted, so bits agree with Python's.
+A float parameter makes a float of an integer. Nothing is checked when it runs: indices and the ends of slices
+lie within the array, and negative ones do not count from its end; integers have 64 bits, and 53 where they
+are divided or compared with floats; no integer is divided by zero, and a float by zero gives what the
+processor does. Additions are neither reordered nor contracted, so bits agree with Python's.
 """
 
 import ast
@@ -62,6 +62,8 @@ BUILTINS = {function.__name__: function for function in (min, max, abs, int, flo
 FUNCTIONS = BUILTINS | {name: getattr(math, name) for name in ("isfinite", *INTRINSICS, *LIBRARY)}
 LARGEST_INTEGER = 2**63 - 1
 NUMBER_BYTES = 8
+LONG = 100
+"""Lines of a function above which it stays one: a copy at every call would only take time to compile."""
 RUNTIME = [
     *declarations(),
     "declare double @pow(double, double) nobuiltin nounwind willreturn memory(none)",  # else not Python's
@@ -167,7 +169,8 @@ class _Code:
 
     def text(self, name: str) -> str:
         """The function's text."""
-        head = f"define internal {_returned(self.result)} @{name}({self.parameters.text}) nounwind {{"
+        how = "nounwind noinline" if len(self.lines) > LONG else "nounwind"
+        head = f"define internal {_returned(self.result)} @{name}({self.parameters.text}) {how} {{"
         return "\n".join([head, *self.stack, *self.lines, "}"])
 
     # lines

@@ -314,6 +314,18 @@ def numbers(x: float, n: int) -> tuple[float, int, bool, bool]:
 
 
 @compiled
+def fixed() -> float:
+    """Without parameters."""
+    return SHARE
+
+
+@compiled
+def empty(nothing: tuple[()]) -> tuple[()]:
+    """A tuple of nothing, given and returned."""
+    return nothing
+
+
+@compiled
 def single(x: float) -> tuple[float]:
     """A tuple of one."""
     return (x,)
@@ -328,6 +340,8 @@ def calls(x: float, n: int, row: np.ndarray) -> tuple[float, int, bool, float, f
     found = numbers(x, m)
     numbers(x, 1)
     (z,) = single(numbers(y, m)[0])
+    empty(())
+    z += fixed()
     return (
         y + found[0],
         m + found[1],
