@@ -96,6 +96,31 @@ def both(a):
     else:
         one = a
     return other, one
+
+def single(a, b):
+    """A single result, and a call within it."""
+    first, second = pivot(a, b)
+    return first - twice(second)
+
+def twice(a):
+    if a > 0.5:
+        a = a + 1.0
+    else:
+        a = a - 1.0
+    return 2.0*a
+
+def again(a):
+    return again(a - 1.0)
+
+def there(a):
+    return back(a)
+
+def back(a):
+    one, other = pivot(a, there(a))
+    return one
+
+def none(a):
+    return
 '''
 CALLS = """
     p, r = pivot(x, y)
@@ -108,6 +133,8 @@ CALLS = """
     chain[i, 3] = x
     y = chain[i, 3]
     chain[i, 3] = y + chain[i, 2]
+    x = single(y, 2.0*twice(x))
+    chain[i, 4] = x + (twice(y) if x > y else min(single(x, y), 1.0))
 """
 
 
@@ -178,7 +205,7 @@ def stored(*expressions: str, direction: str = "outward") -> Steps:
     return Steps("\n".join(lines), len(expressions), direction)
 
 
-CALLING = {direction: Steps(CALLS, 4, direction, FUNCTIONS) for direction in ("outward", "inward")}
+CALLING = {direction: Steps(CALLS, 5, direction, FUNCTIONS) for direction in ("outward", "inward")}
 
 
 def assert_same_bits(found: tuple[np.ndarray, ...], expected: tuple[np.ndarray, ...]) -> None:
@@ -259,6 +286,14 @@ def test_every_lane_of_every_construct_has_the_bits_of_a_single_arm(lanes: int, 
         ("    x, y = pivot(x)", "'pivot(x)'"),
         ("    x, y = pivot(x, b=y)", "'pivot(x, b=y)'"),
         ("    x, y, z = pivot(x, y)", "'(x, y, z)'"),
+        ("    x = pivot(x, y)", "'pivot(x, y)'"),
+        ("    x, y = twice(x)", "'twice(x)'"),
+        ("    x = twice(x, y)", "'twice(x, y)'"),
+        ("    x = twice()", "'twice()'"),
+        ("    x = twice(a=x)", "'twice(a=x)'"),
+        ("    x = none(x)", "returns nothing"),
+        ("    x = again(x)", "'again(a - 1.0)' calls what it stands in"),
+        ("    x, y = pivot(x, back(y))", "'back(a)' calls what it stands in"),
         ("    x = missing", "'missing'"),
         ("    x = i*y", "'i'"),
         ("    x = q*y", "'q'"),

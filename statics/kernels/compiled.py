@@ -9,31 +9,24 @@ import hashlib
 import struct
 from collections.abc import Callable
 from functools import cache, update_wrapper
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from statics.kernels.calling import address_of
-from statics.kernels.functions import (
-    BOOL,
-    FLOAT,
-    INT,
-    SCALAR_KINDS,
-    ArrayKind,
-    Kind,
-    TupleKind,
-    cells,
-    declared_kinds,
-    lower_function,
-)
+from statics.kernels.functions import declared_kinds, lower_function
 from statics.kernels.kept_files import kernel_folder, read_sealed, write_sealed
+from statics.kernels.kinds import BOOL, FLOAT, INT, SCALAR_KINDS, ArrayKind, Kind, TupleKind, cells, named
 from statics.kernels.machine_code import MachineCode, compile_text, machine_name
 from statics.support.stages import stage
 
 SHARED = (Path(__file__).parent, Path(__file__).parent.parent / "passes")
 """Folders of what compiled functions everywhere may call."""
-FORMATS = {FLOAT: "d", INT: "q", BOOL: "q", "ptr": "q"}
+FORMATS = {FLOAT: "d", INT: "q", BOOL: "?", "ptr": "q"}
+ACCEPTED = {FLOAT: Real, INT: Integral, BOOL: bool}
+"""What a parameter that is annotated as a number takes."""
 
 Result = TypeVar("Result")
 
@@ -72,14 +65,17 @@ class compiled(Generic[Result]):  # noqa: N801, a decorator
         return code.call(given)
 
     def _kinds(self, forms: tuple[Any, ...]) -> tuple[Kind, ...]:
-        declared = declared_kinds(self.python)
+        declared, name = declared_kinds(self.python), self.python.__name__
         if len(forms) != len(declared):
-            raise TypeError(f"{self.python.__name__} takes {len(declared)} arguments, not {len(forms)}")
-        return tuple(kind or _kind(form) for form, kind in zip(forms, declared, strict=True))
+            raise TypeError(f"{name} takes {len(declared)} arguments, not {len(forms)}")
+        for (parameter, kind), form in zip(declared.items(), forms, strict=True):
+            if kind and not (isinstance(form, type) and issubclass(form, ACCEPTED[kind])):
+                raise TypeError(f"{name} takes {named(kind)} as '{parameter}', not {_words(form)}")
+        return tuple(kind or _kind(form) for form, kind in zip(forms, declared.values(), strict=True))
 
 
 def _flatten(values: tuple[Any, ...], given: list[Any]) -> tuple[Any, ...]:
-    """The form of every value: an array's number of axes, the forms of a tuple's parts, else its type.
+    """The form of every value: an array's number of axes, a tuple's type and forms of parts, else its type.
 
     Adds the cells that they are made of to those given. Runs at every call, so it is to be fast.
     """
@@ -87,32 +83,45 @@ def _flatten(values: tuple[Any, ...], given: list[Any]) -> tuple[Any, ...]:
     for value in values:
         form: Any = type(value)
         if form is np.ndarray:
-            form = value.ndim
+            shape = value.shape
+            form = len(shape)
             given.append(address_of(value))
-            given.extend(value.shape)
-        elif form is tuple:
-            form = _flatten(value, given)
-        elif issubclass(form, tuple):
+            given.extend(shape)
+        elif not issubclass(form, tuple):
+            given.append(value)
+        elif _number_fields(form):
             given.extend(value)
         else:
-            given.append(value)
+            form = (form, *_flatten(value, given))
         forms.append(form)
     return tuple(forms)
 
 
+@cache
+def _number_fields(form: type) -> dict[str, str]:
+    """Kinds of a named tuple's fields if all are annotated as numbers: then its form is its type alone."""
+    annotations = getattr(form, "__annotations__", {})
+    fields = {name: SCALAR_KINDS.get(annotations.get(name), "") for name in getattr(form, "_fields", ())}
+    return fields if all(fields.values()) else {}
+
+
 def _kind(form: Any) -> Kind:
-    """Kind of a value of that form. A named tuple holds numbers, as annotated."""
+    """Kind of a value of that form."""
     match form:
         case int():
             return ArrayKind(form)
-        case tuple():
-            return TupleKind(tuple(map(_kind, form)))
-    if issubclass(form, tuple):
-        return TupleKind(tuple(map(_kind, form.__annotations__.values())), tuple(form.__annotations__))
+        case (kind, *parts):
+            return TupleKind(tuple(map(_kind, parts)), getattr(kind, "_fields", ()))
+    if fields := _number_fields(form):
+        return TupleKind(tuple(fields.values()), tuple(fields))
     for known, kind in SCALAR_KINDS.items():
         if issubclass(form, known):
             return kind
-    raise TypeError(f"compiled code takes numbers, arrays and tuples of these, not {form.__name__}")
+    raise TypeError(f"compiled code takes numbers, arrays and tuples of these, not {_words(form)}")
+
+
+def _words(form: Any) -> str:
+    return form.__name__ if isinstance(form, type) else named(_kind(form))
 
 
 class _Code:
@@ -121,7 +130,8 @@ class _Code:
     def __init__(self, function: Callable[..., Any], kinds: tuple[Kind, ...]) -> None:
         file = Path(function.__code__.co_filename)
         name = f"{file.stem}.{function.__name__}"
-        shape = repr((name, _digest(file.parent), kinds, machine_name()))
+        line = function.__code__.co_firstlineno
+        shape = repr((name, line, _digest(file.parent), kinds, machine_name()))
         path = kernel_folder() / f"{name}.{hashlib.sha256(shape.encode()).hexdigest()[:24]}"
         kept = read_sealed(path)
         if kept is None:
@@ -133,19 +143,27 @@ class _Code:
         self.entry = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(
             self.machine_code.address("entry")
         )
-        self.arguments = struct.Struct("".join(FORMATS[cell] for kind in kinds for cell in cells(kind)))
-        self.shape, *self.kinds = result.decode().split()
-        self.results = struct.Struct("".join(FORMATS[kind] for kind in self.kinds))
+        self.pack = _layout([cell for kind in kinds for cell in cells(kind)]).pack
+        self.shape, *found = result.decode().split()
+        self.results = _layout(found)
 
     def call(self, given: list[Any]) -> Any:
         """Run the code with these cells of arguments; returns what the function does."""
-        results = bytes(8 * len(self.kinds))
-        self.entry(self.arguments.pack(*given), results)
+        try:
+            arguments = self.pack(*given)
+        except (struct.error, OverflowError) as error:
+            raise TypeError(f"compiled code takes numbers as annotated, within 64 bits: {error}") from None
+        results = bytes(self.results.size)
+        self.entry(arguments, results)
         if self.shape == "nothing":
             return None
         found = self.results.unpack(results)
-        values = tuple(bool(v) if kind == BOOL else v for kind, v in zip(self.kinds, found, strict=True))
-        return values if self.shape == "several" else values[0]
+        return found if self.shape == "several" else found[0]
+
+
+def _layout(kinds: list[str]) -> struct.Struct:
+    """How cells of these kinds lie in memory."""
+    return struct.Struct("".join(FORMATS[kind] for kind in kinds))
 
 
 def _compile(function: Callable[..., Any], kinds: tuple[Kind, ...]) -> bytes:
@@ -153,7 +171,7 @@ def _compile(function: Callable[..., Any], kinds: tuple[Kind, ...]) -> bytes:
     text, result = lower_function(function, kinds)
     shape = "nothing" if result is None else "several" if isinstance(result, TupleKind) else "one"
     head = " ".join([shape, *(cells(result) if result is not None else ())])
-    return head.encode() + b"\n" + compile_text(text)
+    return head.encode() + b"\n" + compile_text(text, multiply_loops=False)
 
 
 @cache

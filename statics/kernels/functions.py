@@ -7,21 +7,37 @@ returns of numbers, and calls of other such functions, of passes by ``run``, and
 ``array[i]`` and ``array[a:b]`` are views; ``np.empty`` and ``np.zeros`` make workspaces, which end with the
 function. Anything else is refused by name.
 
-Nothing is checked when it runs: not an index, and a negative one does not count from the end. Additions are
-neither reordered nor contracted, so bits agree with Python's.
+A float parameter makes a float of an integer. Nothing is checked when it runs: indices and the ends of slices
+lie within the array, and negative ones do not count from its end; integers have 64 bits, and 53 where they
+are divided or compared with floats; no integer is divided by zero, and a float by zero gives what the
+processor does. Additions are neither reordered nor contracted, so bits agree with Python's.
 """
 
 import ast
+import inspect
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
 from statics.kernels.calling import run
+from statics.kernels.kinds import (
+    BOOL,
+    FLOAT,
+    INT,
+    NAMES,
+    SCALAR_KINDS,
+    ArrayKind,
+    Kind,
+    TupleKind,
+    Value,
+    cells,
+    named,
+)
 from statics.kernels.lowering import (
     COMPARISONS,
     INTRINSICS,
@@ -29,123 +45,77 @@ from statics.kernels.lowering import (
     LIBRARY,
     OPERATIONS,
     LoweringError,
-    constant_number,
+    declarations,
     float_text,
 )
 
-FLOAT, INT, BOOL = "double", "i64", "i1"
-SCALAR_KINDS = {bool: BOOL, int: INT, float: FLOAT}
-"""LLVM's types of numbers, by the annotations that name them."""
-NAMES = {FLOAT: "a float", INT: "an integer", BOOL: "a bool"}
 INTEGER_OPERATIONS = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
-INTEGER_COMPARISONS = {
-    ast.Gt: "sgt",
-    ast.Lt: "slt",
-    ast.GtE: "sge",
-    ast.LtE: "sle",
-    ast.Eq: "eq",
-    ast.NotEq: "ne",
+FLOAT_COMPARISONS = {ast.Eq: "fcmp oeq", ast.NotEq: "fcmp une"} | {
+    comparison: f"fcmp {how}" for comparison, how in COMPARISONS.items()
 }
-FLOAT_COMPARISONS = COMPARISONS | {ast.Eq: "oeq", ast.NotEq: "une"}
-ALLOCATIONS = (np.empty, np.zeros)
-RUNTIME = """\
-declare double @llvm.sqrt.f64(double)
-declare double @llvm.fabs.f64(double)
-declare double @pow(double, double) nounwind willreturn memory(none)
-declare ptr @calloc(i64, i64)
-declare void @free(ptr)
-"""
+INTEGER_COMPARISONS = {ast.Eq: "icmp eq", ast.NotEq: "icmp ne"} | {
+    comparison: f"icmp s{how[1:]}" for comparison, how in COMPARISONS.items()
+}
+NUMBERS = {"abs": 1, "float": 1, "isfinite": 1} | dict.fromkeys(INTRINSICS, 1) | LIBRARY
+"""How many numbers a function takes, by its name, and gives a float or a bool."""
+BUILTINS = {function.__name__: function for function in (min, max, abs, int, float, len, range)}
+FUNCTIONS = BUILTINS | {name: getattr(math, name) for name in ("isfinite", *INTRINSICS, *LIBRARY)}
+LARGEST_INTEGER = 2**63 - 1
 NUMBER_BYTES = 8
+LONG = 100
+"""Lines of a function above which it stays one: a copy at every call would only take time to compile."""
+RUNTIME = [
+    *declarations(),
+    "declare double @pow(double, double) nobuiltin nounwind willreturn memory(none)",  # else not Python's
+    "declare ptr @calloc(i64, i64)",
+    "declare void @free(ptr)",
+]
+ALLOWED = (
+    "Allowed: floats, integers, bools, arrays, tuples of these; assignments, if, while, for over a range, "
+    "return of numbers, arithmetic and comparisons, indices and slices without gaps, reshape, np.empty and "
+    "np.zeros outside of loops, min, max, abs, int, float, len, math, and calls of compiled functions."
+)
 
 
-@dataclass(frozen=True)
-class ArrayKind:
-    """Kind of an array of floats: its number of axes."""
+def declared_kinds(function: Callable[..., Any]) -> dict[str, str | None]:
+    """Kinds of the parameters that are annotated as numbers; None of those that are seen by their values.
 
-    axes: int
-
-
-@dataclass(frozen=True)
-class TupleKind:
-    """Kind of a tuple: those of its parts, and their names if it has such."""
-
-    parts: "tuple[Kind, ...]"
-    names: tuple[str, ...] = ()
-
-
-Kind = str | ArrayKind | TupleKind
-
-
-def cells(kind: Kind) -> list[str]:
-    """LLVM's types of what a value is made of: an array of its address and its shape."""
-    match kind:
-        case ArrayKind(axes):
-            return ["ptr", *[INT] * axes]
-        case TupleKind(parts):
-            return [cell for part in parts for cell in cells(part)]
-    return [kind]
-
-
-@dataclass(frozen=True)
-class Value:
-    """A value in the making: its kind, and LLVM's names of its cells."""
-
-    kind: Kind
-    cells: tuple[str, ...]
-
-    @property
-    def parts(self) -> "list[Value]":
-        """The parts of a tuple."""
-        assert isinstance(self.kind, TupleKind)
-        found, start = [], 0
-        for kind in self.kind.parts:
-            end = start + len(cells(kind))
-            found.append(Value(kind, self.cells[start:end]))
-            start = end
-        return found
-
-
-@dataclass(frozen=True)
-class Function:
-    """A function of an ordinary module: its tree, the names it sees, and what its annotations say."""
-
-    name: str
-    file: str
-    tree: ast.FunctionDef
-    names: dict[str, Any]
-
-    @classmethod
-    def of(cls, function: Callable[..., Any]) -> "Function":
-        """The function as it stands in its file."""
-        code = function.__code__
-        tree = _definitions(code.co_filename)[code.co_firstlineno]
-        return cls(function.__name__, code.co_filename, tree, function.__globals__)
-
-
-@cache
-def _definitions(file: str) -> dict[int, ast.FunctionDef]:
-    """Functions of a file by their first line, decorators included."""
-    nodes = ast.walk(ast.parse(Path(file).read_text(encoding="utf-8")))
-    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
-    return {min(part.lineno for part in (node, *node.decorator_list)): node for node in functions}
+    Raises ``LoweringError`` for a function with parameters of other sorts.
+    """
+    code = function.__code__
+    if code.co_flags & (inspect.CO_VARARGS | inspect.CO_VARKEYWORDS) or code.co_kwonlyargcount:
+        raise _refusal(function, code.co_firstlineno, code.co_name, "takes more than parameters in order")
+    annotations = function.__annotations__
+    return {name: SCALAR_KINDS.get(annotations.get(name)) for name in code.co_varnames[: code.co_argcount]}
 
 
 def lower_function(function: Callable[..., Any], kinds: Sequence[Kind]) -> tuple[str, Kind | None]:
     """LLVM's text of a function for arguments of these kinds, and the kind of its result.
 
-    The text holds ``void entry(ptr arguments, ptr results)``: both point to cells of 8 bytes.
+    The text holds ``void entry(ptr arguments, ptr results)``: cells as in C's structures.
     Raises ``LoweringError`` for what cannot be lowered.
     """
     unit = _Unit()
-    name, result = unit.lower(function, kinds)
-    lines, arguments = [], ["ptr %results"]
-    for number, cell in enumerate(cell for kind in kinds for cell in cells(kind)):
-        lines.append(f"  %at_{number} = getelementptr i64, ptr %arguments, i64 {number}")
-        lines.append(f"  %cell_{number} = load {cell}, ptr %at_{number}")
-        arguments.append(f"{cell} %cell_{number}")
-    lines += [f"  call void @{name}({', '.join(arguments)})", "  ret void", "}"]
-    head = "define void @entry(ptr %arguments, ptr %results) nounwind {"
-    return "\n".join([RUNTIME, *unit.declarations(), *unit.texts, head, *lines]), result
+    try:
+        name, result = unit.lower(function, kinds)
+    except RecursionError:
+        line = function.__code__.co_firstlineno
+        raise _refusal(function, line, function.__name__, "is nested too deeply") from None
+    given = _parameters(kinds)
+    whole = _struct(cells(given.kind))
+    parts = [f"  {cell} = extractvalue {whole} %given, {k}" for k, cell in enumerate(given.cells)]
+    call = f"call {_returned(result)} @{name}({given.text})"
+    called = [f"  %found = {call}", f"  store {_returned(result)} %found, ptr %results"]
+    lines = [
+        *(*RUNTIME, *unit.texts, "define void @entry(ptr %arguments, ptr %results) nounwind {"),
+        *(
+            f"  %given = load {whole}, ptr %arguments",
+            *parts,
+            *(called if result is not None else [f"  {call}"]),
+        ),
+        *("  ret void", "}"),
+    ]
+    return "\n".join(lines), result
 
 
 class _Unit:
@@ -153,225 +123,211 @@ class _Unit:
 
     def __init__(self) -> None:
         self.texts: list[str] = []
-        self.known: dict[tuple[Any, tuple[Kind, ...]], tuple[str, Kind | None] | None] = {}
-        self.library: set[str] = set()
-
-    def declarations(self) -> list[str]:
-        """Functions of the mathematical library that are called."""
-        return [
-            f"declare double @{name}({', '.join(['double'] * count)}) nounwind willreturn memory(none)"
-            for name, count in LIBRARY.items()
-            if name in self.library
-        ]
+        self.known: dict[tuple[Any, tuple[Kind, ...]], tuple[str, Kind | None]] = {}
+        self.open: set[Callable[..., Any]] = set()
 
     def lower(self, function: Callable[..., Any], kinds: Sequence[Kind]) -> tuple[str, Kind | None]:
         """Name and kind of the result of a function for arguments of these kinds, lowered at first sight."""
         key = (function, tuple(kinds))
         if key not in self.known:
-            self.known[key] = None
-            name = f"{function.__name__}_{len(self.known)}"
-            code = _Code(self, Function.of(function), kinds)
-            self.texts.append(code.text(name))
+            self.open.add(function)
+            code = _Code(self, function, kinds)
+            self.open.remove(function)
+            name = f"f{len(self.known)}"
             self.known[key] = name, code.result
-        found = self.known[key]
-        if found is None:
-            raise LoweringError(f"'{function.__name__}' calls itself, which cannot be lowered.")
-        return found
+            self.texts.append(code.text(name))
+        return self.known[key]
 
 
 class _Code:
     """Lines of one function, with its variables on the stack: LLVM turns them into registers."""
 
-    def __init__(self, unit: _Unit, function: Function, kinds: Sequence[Kind]) -> None:
+    def __init__(self, unit: _Unit, function: Callable[..., Any], kinds: Sequence[Kind]) -> None:
         self.unit, self.function = unit, function
-        self.lines: list[str] = []
+        code = function.__code__
+        self.local = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
         self.stack: list[str] = []
-        self.variables: dict[str, Value] = {}
+        self.lines: list[str] = []
         self.count = 0
+        self.variables: dict[str, Value] = {}
         self.loops: list[tuple[str, str]] = []
+        self.reached: set[str] = set()
         self.ended = False
         self.results: list[Kind | None] = []
         self.workspaces: list[str] = []
-        arguments = ["ptr %results"]
-        for argument, kind in zip(function.tree.args.args, kinds, strict=True):
-            names = tuple(f"%{argument.arg}_{k}" for k in range(len(cells(kind))))
-            arguments += [f"{cell} {name}" for cell, name in zip(cells(kind), names, strict=True)]
-            self.set_name(argument.arg, Value(kind, names))
-        self.arguments = ", ".join(arguments)
-        self.statements(function.tree.body)
+        tree, self.parameters = _definition(function), _parameters(kinds)
+        for name, value in zip(declared_kinds(function), self.parameters.parts, strict=True):
+            self.set_name(name, value, tree)
+        self.statements(tree.body)
         if not self.ended:
-            self.give_back(None)
+            self.give_back(None, tree.body[-1])
 
     @property
     def result(self) -> Kind | None:
         """Kind of what the function returns."""
-        return self.results[0]
+        return self.results[0] if self.results else None
 
     def text(self, name: str) -> str:
         """The function's text."""
-        head = f"define internal void @{name}({self.arguments}) nounwind {{"
-        return "\n".join([head, "entry:", *self.stack, *self.lines, "}"])
+        how = "nounwind noinline" if len(self.lines) > LONG else "nounwind"
+        head = f"define internal {_returned(self.result)} @{name}({self.parameters.text}) {how} {{"
+        return "\n".join([head, *self.stack, *self.lines, "}"])
 
     # lines
 
+    def emit(self, line: str) -> None:
+        """Add a line."""
+        self.lines.append(f"  {line}")
+
     def assign(self, operation: str) -> str:
-        """The name of a new value."""
+        """The name of a new cell."""
         self.count += 1
-        self.lines.append(f"  %v{self.count} = {operation}")
+        self.emit(f"%v{self.count} = {operation}")
         return f"%v{self.count}"
 
-    def slot(self, kind: str, start: str = "") -> str:
+    def new(self, kind: str, operation: str) -> Value:
+        """A new number."""
+        return Value(kind, (self.assign(operation),))
+
+    def slot(self, kind: str) -> str:
         """A place on the stack for one cell."""
         self.count += 1
         self.stack.append(f"  %s{self.count} = alloca {kind}")
-        if start:
-            self.stack.append(f"  store {kind} {start}, ptr %s{self.count}")
         return f"%s{self.count}"
 
-    def labels(self, *names: str) -> list[str]:
-        """New labels of blocks."""
+    def label(self) -> str:
+        """A new label."""
         self.count += 1
-        return [f"{name}_{self.count}" for name in names]
-
-    def block(self, label: str) -> None:
-        """Begin a block, where what came before may go on."""
-        self.go(label)
-        self.begin(label)
+        return f"b{self.count}"
 
     def begin(self, label: str) -> None:
-        """Begin a block that is only gone to."""
-        self.lines.append(f"{label}:")
-        self.ended = False
-
-    def never(self) -> None:
-        """End a block that is never gone to."""
-        self.lines.append("  unreachable")
-        self.ended = True
+        """Begin a block, where what came before may go on; if nothing goes to it, there is none."""
+        self.go(label)
+        self.ended = label not in self.reached
+        if not self.ended:
+            self.lines.append(f"{label}:")
 
     def go(self, label: str) -> None:
         """End a block that has not ended yet."""
         if not self.ended:
-            self.lines.append(f"  br label %{label}")
+            self.emit(f"br label %{label}")
+            self.reached.add(label)
         self.ended = True
 
     def fork(self, condition: str, first: str, second: str) -> None:
         """End a block one way or the other."""
-        self.lines.append(f"  br i1 {condition}, label %{first}, label %{second}")
+        self.emit(f"br i1 {condition}, label %{first}, label %{second}")
+        self.reached |= {first, second}
         self.ended = True
 
     def refusal(self, node: ast.AST, why: str = "cannot be lowered") -> LoweringError:
         """An error that says where and what."""
-        place = f"{Path(self.function.file).name}, line {getattr(node, 'lineno', 0)}"
-        return LoweringError(f"{place}: '{ast.unparse(node)}' {why}. {ALLOWED}")
+        return _refusal(self.function, getattr(node, "lineno", 0), ast.unparse(node).split("\n")[0], why)
 
     # statements
 
     def statements(self, nodes: Sequence[ast.stmt]) -> None:
         """Lower statements up to one that never goes on to the next."""
         for node in nodes:
-            if self.ended:
-                return
-            self.statement(node)
+            if not self.ended:
+                self.statement(node)
 
     def statement(self, node: ast.stmt) -> None:
         """Lower one statement; a docstring is passed over."""
         match node:
-            case ast.Expr(value=ast.Constant()):
+            case ast.Expr(value=ast.Constant()) | ast.Pass():
                 pass
             case ast.Expr(value=ast.Call() as call):
                 self.call(call)
             case ast.Assign(targets=[target], value=value):
                 self.set(target, self.value(value))
-            case ast.AugAssign(target=ast.Name() | ast.Subscript() as target, op=operation, value=value):
-                before = ast.copy_location(ast.BinOp(_loaded(target), operation, value), node)
-                self.set(target, self.value(before))
+            case ast.AugAssign(target=ast.Name() as target):
+                self.set(target, self.arithmetic(node, self.value(target), self.value(node.value)))
+            case ast.AugAssign(target=ast.Subscript() as target):
+                place = self.place(target)
+                before = self.new(FLOAT, f"load double, ptr {place}")
+                self.store(place, self.arithmetic(node, before, self.value(node.value)), node)
             case ast.If():
                 self.branch(node)
-            case ast.While(test=test, body=body, orelse=[]):
-                head, inside, after = self.labels("while", "body", "after")
-                self.block(head)
-                self.fork(self.truth(test), inside, after)
-                self.loop(inside, body, head, after)
-                if isinstance(test, ast.Constant) and not _breaks(body):
-                    self.never()
-            case ast.For(target=ast.Name(id=name), iter=ast.Call(func=ast.Name(id="range")), orelse=[]):
-                self.count_over(name, node)
-            case ast.Break() if self.loops:
-                self.go(self.loops[-1][1])
-            case ast.Continue() if self.loops:
-                self.go(self.loops[-1][0])
-            case ast.Return(value=value):
-                self.give_back(None if value is None else self.value(value))
+            case ast.While(orelse=[]):
+                self.repeat(node)
+            case ast.For(target=ast.Name(), iter=ast.Call(func=function, args=arguments, keywords=[])) if (
+                self.known(function) is range and not node.orelse
+            ):
+                self.count_over(node, arguments)
+            case ast.Break() | ast.Continue():
+                again, after = self.loops[-1]
+                self.go(after if isinstance(node, ast.Break) else again)
+            case ast.Return(value=None | ast.Constant(value=None)):
+                self.give_back(None, node)
+            case ast.Return(value=ast.expr() as value):
+                self.give_back(self.value(value), node)
             case _:
                 raise self.refusal(node)
 
     def branch(self, node: ast.If) -> None:
         """Lower an ``if``."""
-        first, second, after = self.labels("then", "else", "end")
+        first, second, after = self.label(), self.label(), self.label()
         self.fork(self.truth(node.test), first, second)
-        all_ended = True
         for label, body in ((first, node.body), (second, node.orelse)):
             self.begin(label)
             self.statements(body)
-            all_ended = all_ended and self.ended
             self.go(after)
         self.begin(after)
-        if all_ended:
-            self.never()
 
-    def loop(self, label: str, body: Sequence[ast.stmt], again: str, after: str) -> None:
-        """Lower a loop's body, which goes on at one label and ends at another."""
-        self.loops.append((again, after))
-        self.begin(label)
+    def repeat(self, node: ast.While) -> None:
+        """Lower a ``while``."""
+        head, inside, after = self.label(), self.label(), self.label()
+        self.loops.append((head, after))
+        self.begin(head)
+        if not (isinstance(node.test, ast.Constant) and node.test.value is True):
+            self.fork(self.truth(node.test), inside, after)
+        self.begin(inside)
+        self.rest_of_loop(node.body)
+
+    def count_over(self, node: ast.For, arguments: Sequence[ast.expr]) -> None:
+        """Lower ``for name in range(...)``, with a step of a constant size."""
+        values = [self.value(argument) for argument in arguments]
+        values = [*([_constant(0)] if len(values) == 1 else []), *values, _constant(1)]
+        step = values[2].literal if len(arguments) in (1, 2, 3) else None
+        if not step:
+            raise self.refusal(node.iter, "must count up or down by a constant")
+        first, end = (self.converted(value, INT, node.iter) for value in values[:2])
+        head, inside, after = self.label(), self.label(), self.label()
+        self.set_name(f"counter {head}", Value(INT, (first,)), node)
+        self.loops.append((head, after))
+        self.begin(head)
+        now = self.variable(f"counter {head}")
+        more = self.assign(f"icmp {'slt' if step > 0 else 'sgt'} i64 {now.cells[0]}, {end}")
+        self.fork(more, inside, after)
+        self.begin(inside)
+        self.set_name(f"counter {head}", self.new(INT, f"add nsw i64 {now.cells[0]}, {step}"), node)
+        self.set(node.target, now)
+        self.rest_of_loop(node.body)
+
+    def rest_of_loop(self, body: Sequence[ast.stmt]) -> None:
+        """Lower a loop's body and its way back."""
+        again, after = self.loops[-1]
         self.statements(body)
         self.go(again)
         self.loops.pop()
         self.begin(after)
 
-    def count_over(self, name: str, node: ast.For) -> None:
-        """Lower ``for name in range(...)``, with a step of a constant size."""
-        assert isinstance(node.iter, ast.Call)
-        arguments = node.iter.args
-        change = constant_number(arguments[2]) if len(arguments) == 3 else 1
-        if not change or node.iter.keywords:
-            raise self.refusal(node.iter)
-        first = self.integer(arguments[0]) if len(arguments) > 1 else "0"
-        bound = self.integer(arguments[min(1, len(arguments) - 1)])
-        head, inside, again, after = self.labels("for", "body", "next", "after")
-        counter = self.slot(INT)
-        self.lines.append(f"  store i64 {first}, ptr {counter}")
-        self.block(head)
-        now = self.assign(f"load i64, ptr {counter}")
-        more = self.assign(f"icmp {'slt' if change > 0 else 'sgt'} i64 {now}, {bound}")
-        self.fork(more, inside, after)
-        self.begin(inside)
-        self.set_name(name, Value(INT, (now,)))
-        inside = self.labels("inside")[0]
-        self.go(inside)
-        self.loop(inside, node.body, again, after)
-        tail = self.lines.pop()
-        self.lines.append(f"{again}:")
-        following = self.assign(f"add nsw i64 {now}, {int(change)}")
-        self.lines += [f"  store i64 {following}, ptr {counter}", f"  br label %{head}", tail]
-
-    def give_back(self, value: Value | None) -> None:
+    def give_back(self, value: Value | None, node: ast.AST) -> None:
         """Return numbers, or nothing; workspaces end."""
         kind = None if value is None else value.kind
-        kinds = [] if value is None else cells(value.kind)
-        nested = isinstance(kind, TupleKind) and not all(isinstance(part, str) for part in kind.parts)
-        if nested or "ptr" in kinds or any(kind != other for other in self.results):
-            raise LoweringError(
-                f"'{self.function.name}' may only return numbers, of the same kinds at every return."
-            )
-        self.results.append(kind)
-        for number, (cell, kept) in enumerate(zip(kinds, value.cells if value else (), strict=True)):
-            place = self.assign(f"getelementptr i64, ptr %results, i64 {number}")
-            widened = self.assign(f"zext i1 {kept} to i64") if cell == BOOL else kept
-            self.lines.append(f"  store {INT if cell == BOOL else cell} {widened}, ptr {place}")
+        parts = kind.parts if isinstance(kind, TupleKind) else (kind,)
+        if not all(part in NAMES for part in parts) or self.results not in ([], [kind]):
+            why = f"returns {named(kind)}: every return must give numbers, of the same kinds, or nothing"
+            raise self.refusal(node, why)
+        self.results = [kind]
         for workspace in self.workspaces:
             pointer = self.assign(f"load ptr, ptr {workspace}")
-            self.lines.append(f"  call void @free(ptr {pointer})")
-        self.lines.append("  ret void")
+            self.emit(f"call void @free(ptr {pointer})")
+        whole = ["undef"]
+        for number, (cell, given) in enumerate(value.typed if value is not None else ()):
+            whole.append(self.assign(f"insertvalue {_returned(kind)} {whole[-1]}, {cell} {given}, {number}"))
+        self.emit("ret void" if value is None else f"ret {_returned(kind)} {whole[-1]}")
         self.ended = True
 
     # assignments
@@ -379,56 +335,54 @@ class _Code:
     def set(self, target: ast.expr, value: Value) -> None:
         """Assign to a name, to an array's number, or to several of these."""
         match target:
-            case ast.Name(id="_"):
-                pass
             case ast.Name(id=name):
                 self.set_name(name, value, target)
-            case ast.Tuple(elts=parts) if isinstance(value.kind, TupleKind):
-                if len(parts) != len(value.kind.parts):
-                    raise self.refusal(target)
+            case ast.Tuple(elts=parts) if parts and len(parts) == len(value.parts):
                 for part, given in zip(parts, value.parts, strict=True):
                     self.set(part, given)
             case ast.Subscript():
-                array = self.value(target.value)
-                viewed = self.view(array, target)
-                if viewed.kind != ArrayKind(0):
-                    raise self.refusal(target, "is no single number")
-                self.lines.append(
-                    f"  store double {self.converted(value, FLOAT, target)}, ptr {viewed.cells[0]}"
-                )
+                self.store(self.place(target), value, target)
             case _:
-                raise self.refusal(target)
+                raise self.refusal(target, f"cannot be assigned {named(value.kind)}")
 
-    def set_name(self, name: str, value: Value, node: ast.AST | None = None) -> None:
-        """Assign to a variable, whose kind is that of its first value."""
+    def set_name(self, name: str, value: Value, node: ast.AST) -> None:
+        """Assign to a variable, whose kind is that of its first value; ``_`` is none."""
+        if name == "_":
+            return
         if name not in self.variables:
-            slots = tuple(self.slot(cell) for cell in cells(value.kind))
-            self.variables[name] = Value(value.kind, slots)
+            self.variables[name] = Value(value.kind, tuple(map(self.slot, cells(value.kind))))
         variable = self.variables[name]
-        if variable.kind == FLOAT and value.kind == INT and node is not None:
-            value = Value(FLOAT, (self.converted(value, FLOAT, node),))
         if variable.kind != value.kind:
-            assert node is not None
-            raise self.refusal(node, f"was {_named(variable.kind)} before, and is given {_named(value.kind)}")
-        for kind, given, slot in zip(cells(value.kind), value.cells, variable.cells, strict=True):
-            self.lines.append(f"  store {kind} {given}, ptr {slot}")
+            raise self.refusal(node, f"is {named(value.kind)}, where {named(variable.kind)} was before")
+        for (cell, given), slot in zip(value.typed, variable.cells, strict=True):
+            self.emit(f"store {cell} {given}, ptr {slot}")
+
+    def variable(self, name: str) -> Value:
+        """The value of a variable."""
+        kept = self.variables[name]
+        return Value(kept.kind, tuple(self.assign(f"load {cell}, ptr {slot}") for cell, slot in kept.typed))
+
+    def place(self, target: ast.Subscript) -> str:
+        """Address of an array's number."""
+        viewed = self.view(self.value(target.value), target)
+        if viewed.kind != ArrayKind(0):
+            raise self.refusal(target, "is no single number")
+        return viewed.cells[0]
+
+    def store(self, place: str, value: Value, node: ast.AST) -> None:
+        """Set an array's number."""
+        self.emit(f"store double {self.converted(value, FLOAT, node)}, ptr {place}")
 
     # values
 
     def value(self, node: ast.expr) -> Value:
         """The value of an expression."""
         match node:
-            case ast.Constant(value=bool() | int() | float() as constant):
-                return _constant(constant)
             case ast.Name(id=name) if name in self.variables:
-                variable = self.variables[name]
-                kinds = zip(cells(variable.kind), variable.cells, strict=True)
-                return Value(
-                    variable.kind, tuple(self.assign(f"load {kind}, ptr {slot}") for kind, slot in kinds)
-                )
-            case ast.Name() | ast.Attribute(value=ast.Name()) if (
-                type(known := self.known(node)) in SCALAR_KINDS
-            ):
+                return self.variable(name)
+            case ast.Name(id=name) if name in self.local:
+                raise self.refusal(node, "is read before it is assigned, or is no variable of the function's")
+            case ast.Constant() | ast.Name() | ast.Attribute() if _is_number(known := self.known(node)):
                 return _constant(known)
             case ast.Attribute(value=owner, attr=name):
                 return self.attribute(node, self.value(owner), name)
@@ -438,18 +392,18 @@ class _Code:
                 return Value(kind, tuple(cell for value in values for cell in value.cells))
             case ast.Subscript():
                 return self.subscript(node)
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                return self.new(BOOL, f"xor i1 {self.truth(operand)}, true")
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                value = self.number(operand)
-                zero = "fneg double" if value.kind == FLOAT else "sub i64 0,"
-                return Value(value.kind, (self.assign(f"{zero} {value.cells[0]}"),))
-            case ast.BinOp():
-                return self.arithmetic(node)
-            case ast.Compare() | ast.BoolOp() | ast.UnaryOp(op=ast.Not()):
-                return Value(BOOL, (self.truth(node),))
-            case ast.IfExp(test=test, body=body, orelse=other):
-                return self.choice(
-                    self.truth(test), lambda: self.value(body), lambda: self.value(other), node
-                )
+                return self.negative(self.value(operand), node)
+            case ast.BinOp(left=left, right=right):
+                return self.arithmetic(node, self.value(left), self.value(right))
+            case ast.Compare(left=left, ops=[operation], comparators=[right]):
+                return self.compared(type(operation), self.value(left), self.value(right), node)
+            case ast.BoolOp():
+                return self.joined(node)
+            case ast.IfExp():
+                return self.choice(node)
             case ast.Call():
                 value = self.call(node)
                 if value is not None:
@@ -457,35 +411,39 @@ class _Code:
         raise self.refusal(node)
 
     def known(self, node: ast.expr) -> Any:
-        """What a name, or one of a module's, stands for outside of the function; None if for nothing."""
+        """What a constant, a name, or one of a module's, stands for outside of the function; else None."""
         match node:
-            case ast.Name(id=name):
-                return self.function.names.get(name, _BUILTINS.get(name))
-            case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner not in self.variables:
-                return getattr(self.function.names.get(owner), name, None)
+            case ast.Constant(value=value):
+                return value
+            case ast.Name(id=name) if name not in self.local:
+                return self.function.__globals__.get(name, BUILTINS.get(name))
+            case ast.Attribute(value=ast.Name() as owner, attr=name):
+                module = self.known(owner)
+                return getattr(module, name, None) if isinstance(module, ModuleType) else None
         return None
 
     def attribute(self, node: ast.expr, owner: Value, name: str) -> Value:
         """A field of a named tuple, or an array's shape or size."""
-        if isinstance(owner.kind, TupleKind) and name in owner.kind.names:
-            return owner.parts[owner.kind.names.index(name)]
-        if isinstance(owner.kind, ArrayKind) and name == "shape":
-            return Value(TupleKind((INT,) * owner.kind.axes), owner.cells[1:])
-        if isinstance(owner.kind, ArrayKind) and name == "size":
-            return Value(INT, (self.product(owner.cells[1:]),))
+        match owner.kind, name:
+            case TupleKind(names=names), _ if name in names:
+                return owner.parts[names.index(name)]
+            case ArrayKind(axes), "shape":
+                return Value(TupleKind((INT,) * axes), owner.cells[1:])
+            case ArrayKind(), "size":
+                return Value(INT, (self.product(owner.cells[1:]),))
         raise self.refusal(node)
 
     def subscript(self, node: ast.Subscript) -> Value:
         """A part of a tuple, a number of an array, or a view of it."""
         owner = self.value(node.value)
         if isinstance(owner.kind, TupleKind):
-            number = constant_number(node.slice)
-            if number is None or not 0 <= number < len(owner.kind.parts):
+            number = None if isinstance(node.slice, ast.Slice) else self.value(node.slice).literal
+            if number is None or not 0 <= number < len(owner.parts):
                 raise self.refusal(node)
-            return owner.parts[int(number)]
+            return owner.parts[number]
         viewed = self.view(owner, node)
         if viewed.kind == ArrayKind(0):
-            return Value(FLOAT, (self.assign(f"load double, ptr {viewed.cells[0]}"),))
+            return self.new(FLOAT, f"load double, ptr {viewed.cells[0]}")
         return viewed
 
     def view(self, array: Value, node: ast.Subscript) -> Value:
@@ -494,19 +452,33 @@ class _Code:
         if not isinstance(array.kind, ArrayKind) or len(indices) > array.kind.axes:
             raise self.refusal(node)
         pointer, *shape = array.cells
-        for number, index in enumerate(indices):
-            sliced = isinstance(index, ast.Slice)
-            if sliced and (index.step is not None or number < len(indices) - 1):
+        for index in indices:
+            kept = []
+            if not isinstance(index, ast.Slice):
+                first = self.counted(index)
+            elif index.step is None and index is indices[-1]:
+                first = self.counted(index.lower or ast.Constant(0))
+                end = self.counted(index.upper) if index.upper is not None else shape[0]
+                kept = [self.assign(f"sub nsw i64 {end}, {first}")]
+            else:
                 raise self.refusal(node, "is not without gaps")
-            lower = index.lower if sliced else index
-            first = self.integer(lower) if lower is not None else "0"
             inner = self.product([first, *shape[1:]])
             pointer = self.assign(f"getelementptr inbounds double, ptr {pointer}, i64 {inner}")
-            if sliced:
-                end = self.integer(index.upper) if index.upper is not None else shape[0]
-                shape = [self.assign(f"sub nsw i64 {end}, {first}"), *shape[1:]]
-            else:
-                shape = shape[1:]
+            shape = [*kept, *shape[1:]]
+        return Value(ArrayKind(len(shape)), (pointer, *shape))
+
+    def counted(self, node: ast.expr, given: Value | None = None) -> str:
+        """An index, the end of a slice, or a length: an integer that is not seen to be negative."""
+        value = given or self.value(node)
+        if value.kind != INT or (value.literal or 0) < 0:
+            raise self.refusal(node, "is no integer from 0 on")
+        return value.cells[0]
+
+    def shaped(self, pointer: str, node: ast.Call) -> Value:
+        """An array there, of the shape that a call's only argument gives: an integer or a tuple of them."""
+        value = self.value(node.args[0])
+        lengths = value.parts if isinstance(value.kind, TupleKind) else [value]
+        shape = [self.counted(node.args[0], length) for length in lengths]
         return Value(ArrayKind(len(shape)), (pointer, *shape))
 
     def product(self, factors: Sequence[str]) -> str:
@@ -516,48 +488,43 @@ class _Code:
             result = self.assign(f"mul nsw i64 {result}, {factor}")
         return result
 
-    def number(self, node: ast.expr) -> Value:
-        """The value of an expression that is a float or an integer."""
-        value = self.value(node)
-        if value.kind not in (FLOAT, INT):
-            raise self.refusal(node, "is no number")
-        return value
-
-    def integer(self, node: ast.expr) -> str:
-        """The value of an expression that is an integer."""
-        value = self.value(node)
-        if value.kind != INT:
-            raise self.refusal(node, "is no integer")
-        return value.cells[0]
-
     def converted(self, value: Value, kind: str, node: ast.AST) -> str:
         """A number as one of that kind: an integer may become a float."""
         if value.kind == kind:
             return value.cells[0]
         if (value.kind, kind) == (INT, FLOAT):
             return self.assign(f"sitofp i64 {value.cells[0]} to double")
-        raise self.refusal(node, f"is {_named(value.kind)}, and should be {_named(kind)}")
+        raise self.refusal(node, f"takes {named(kind)} where {named(value.kind)} is given")
 
     def alike(self, values: Sequence[Value], node: ast.AST) -> tuple[str, list[str]]:
-        """Numbers as floats, or as integers if all are; and which."""
+        """Numbers as integers if all are, else as floats; and which."""
         kind = INT if all(value.kind == INT for value in values) else FLOAT
         return kind, [self.converted(value, kind, node) for value in values]
 
-    def arithmetic(self, node: ast.BinOp) -> Value:
+    def negative(self, value: Value, node: ast.AST) -> Value:
+        """A number with the other sign."""
+        if value.literal is not None:
+            return _constant(-value.literal)
+        kind, (number,) = self.alike([value], node)
+        return Value(
+            kind, (self.assign(f"fneg double {number}" if kind == FLOAT else f"sub i64 0, {number}"),)
+        )
+
+    def arithmetic(self, node: ast.BinOp | ast.AugAssign, left: Value, right: Value) -> Value:
         """A sum, a product, ..."""
-        if isinstance(node.op, ast.Pow):
-            return Value(FLOAT, (self.power(node),))
-        kind, (first, second) = self.alike([self.number(node.left), self.number(node.right)], node)
         operation = type(node.op)
+        if operation is ast.Pow:
+            return self.power(node, left, right)
+        kind, (first, second) = self.alike([left, right], node)
         if kind == INT and operation in INTEGER_OPERATIONS:
-            return Value(INT, (self.assign(f"{INTEGER_OPERATIONS[operation]} nsw i64 {first}, {second}"),))
+            return self.new(INT, f"{INTEGER_OPERATIONS[operation]} nsw i64 {first}, {second}")
         if kind == INT and operation in (ast.FloorDiv, ast.Mod):
             return Value(INT, (self.floored(first, second, operation is ast.Mod),))
         if operation not in OPERATIONS:
             raise self.refusal(node)
         if kind == INT:
             first, second = (self.assign(f"sitofp i64 {value} to double") for value in (first, second))
-        return Value(FLOAT, (self.assign(f"{OPERATIONS[operation]} double {first}, {second}"),))
+        return self.new(FLOAT, f"{OPERATIONS[operation]} double {first}, {second}")
 
     def floored(self, first: str, second: str, remainder: bool) -> str:
         """Quotient of integers rounded down, or what it leaves, which has the divisor's sign."""
@@ -572,128 +539,123 @@ class _Code:
             other = self.assign(f"sub i64 {left}, 1")
         return self.assign(f"select i1 {mend}, i64 {other}, i64 {left}")
 
-    def power(self, node: ast.BinOp) -> str:
-        """A small whole power by repeated squaring, as of a pass; any other by the library."""
-        base, exponent = self.converted(self.number(node.left), FLOAT, node), constant_number(node.right)
-        if exponent is None or exponent % 1 or not 0 < exponent <= LARGEST_POWER:
-            other = self.converted(self.number(node.right), FLOAT, node)
-            return self.assign(f"call double @pow(double {base}, double {other})")
-        result, square, left = "", base, int(exponent)
+    def power(self, node: ast.AST, base: Value, exponent: Value) -> Value:
+        """A small whole power, which stands in the text, by repeated squaring; any other by the library."""
+        left = exponent.literal
+        if left is None or not 0 < left <= LARGEST_POWER:
+            if base.kind == exponent.kind == INT:
+                raise self.refusal(node, "is no power by a small integer that stands in the text")
+            _, (first, second) = self.alike([base, exponent], node)
+            return self.new(FLOAT, f"call double @pow(double {first}, double {second})")
+        kind, (square,) = self.alike([base], node)
+        times, result = "fmul double" if kind == FLOAT else "mul nsw i64", ""
         while left:
             if left & 1:
-                result = self.assign(f"fmul double {result}, {square}") if result else square
+                result = self.assign(f"{times} {result}, {square}") if result else square
             left >>= 1
             if left:
-                square = self.assign(f"fmul double {square}, {square}")
-        return result
+                square = self.assign(f"{times} {square}, {square}")
+        return Value(kind, (result,))
 
-    def choice(
-        self, condition: str, first: Callable[[], Value], second: Callable[[], Value], node: ast.expr
-    ) -> Value:
-        """One of two numbers, of which only that one is computed."""
-        labels = self.labels("first", "second", "chosen")
-        self.fork(condition, *labels[:2])
-        found: list[tuple[Value, int]] = []
-        for label, make in zip(labels, (first, second), strict=False):
-            self.begin(label)
-            found.append((make(), len(self.lines)))
-            self.go(labels[2])
-        kind = FLOAT if FLOAT in (found[0][0].kind, found[1][0].kind) else found[0][0].kind
-        slot = self.slot(str(kind))
-        for value, line in reversed(found):
-            ending, self.lines[line:] = self.lines[line:], []
-            self.lines.append(f"  store {kind} {self.converted(value, str(kind), node)}, ptr {slot}")
-            self.lines += ending
-        self.begin(labels[2])
-        return Value(kind, (self.assign(f"load {kind}, ptr {slot}"),))
-
-    # truths
+    # truths and choices
 
     def truth(self, node: ast.expr) -> str:
         """The value of a condition."""
-        match node:
-            case ast.Compare(left=left, ops=[operation], comparators=[right]):
-                return self.compared(type(operation), self.number(left), self.number(right), node)
-            case ast.BoolOp(op=operation, values=[first, *others]):
-                rest = others[0] if len(others) == 1 else ast.BoolOp(operation, others)
-                fixed = Value(BOOL, ("false" if isinstance(operation, ast.And) else "true",))
-                go_on, end = (lambda: Value(BOOL, (self.truth(rest),))), (lambda: fixed)
-                ways = (go_on, end) if isinstance(operation, ast.And) else (end, go_on)
-                return self.choice(self.truth(first), *ways, node).cells[0]
-            case ast.UnaryOp(op=ast.Not(), operand=operand):
-                return self.assign(f"xor i1 {self.truth(operand)}, true")
         value = self.value(node)
         if value.kind != BOOL:
             raise self.refusal(node, "is neither true nor false")
         return value.cells[0]
 
-    def compared(self, operation: type[ast.cmpop], left: Value, right: Value, node: ast.expr) -> str:
+    def compared(self, operation: type[ast.cmpop], left: Value, right: Value, node: ast.expr) -> Value:
         """Whether a comparison of two numbers holds."""
         kind, (first, second) = self.alike([left, right], node)
-        if operation not in FLOAT_COMPARISONS:
+        how = (INTEGER_COMPARISONS if kind == INT else FLOAT_COMPARISONS).get(operation)
+        if how is None:
             raise self.refusal(node)
-        if kind == INT:
-            return self.assign(f"icmp {INTEGER_COMPARISONS[operation]} i64 {first}, {second}")
-        return self.assign(f"fcmp {FLOAT_COMPARISONS[operation]} double {first}, {second}")
+        return self.new(BOOL, f"{how} {kind} {first}, {second}")
+
+    def joined(self, node: ast.BoolOp) -> Value:
+        """Whether all hold, or any: the rest is not computed once that is known."""
+        end = self.label()
+        for operand in node.values:
+            truth, more = self.truth(operand), self.label()
+            self.set_name(f"joined {end}", Value(BOOL, (truth,)), operand)
+            self.fork(truth, *((more, end) if isinstance(node.op, ast.And) else (end, more)))
+            self.begin(more)
+        self.begin(end)
+        return self.variable(f"joined {end}")
+
+    def choice(self, node: ast.IfExp) -> Value:
+        """One of two values of the same kind, of which only that one is computed."""
+        first, second, end = self.label(), self.label(), self.label()
+        self.fork(self.truth(node.test), first, second)
+        for label, part in ((first, node.body), (second, node.orelse)):
+            self.begin(label)
+            self.set_name(f"chosen {end}", self.value(part), part)
+            self.go(end)
+        self.begin(end)
+        return self.variable(f"chosen {end}")
 
     # calls
 
     def call(self, node: ast.Call) -> Value | None:
         """The result of a call, None of one that returns nothing."""
         function = self.known(node.func)
-        if isinstance(node.func, ast.Attribute) and node.func.attr == "reshape" and len(node.args) == 1:
-            pointer, shape = self.value(node.func.value).cells[0], self.shape(node.args[0])
-            return Value(ArrayKind(len(shape)), (pointer, *shape))
-        if function is None or node.keywords:
-            raise self.refusal(node)
-        if function in ALLOCATIONS:
+        if node.keywords:
+            raise self.refusal(node, "has named arguments, which cannot be lowered")
+        if function is np.empty or function is np.zeros:
             return self.workspace(node)
+        if function is None and isinstance(node.func, ast.Attribute) and node.func.attr == "reshape":
+            array = self.value(node.func.value)
+            if isinstance(array.kind, ArrayKind) and len(node.args) == 1:
+                return self.shaped(array.cells[0], node)
         values = [self.value(argument) for argument in node.args]
         if function is run:
-            return self.run_pass(values)
-        if hasattr(function, "python"):
-            return self.call_function(node, function.python, values)
-        return self.call_builtin(node, function, values)
-
-    def call_builtin(self, node: ast.Call, function: Any, values: list[Value]) -> Value:
-        """The result of one of Python's own functions, or of a mathematical one."""
-        name = getattr(function, "__name__", "")
-        if function is len and isinstance(values[0].kind, ArrayKind):
-            return Value(INT, values[0].cells[1:2])
-        kind, numbers = self.alike(values, node)
-        if function in (min, max) and len(values) > 1:
-            return Value(kind, (self.extreme(kind, numbers, "gt" if function is max else "lt"),))
-        if function is abs and len(values) == 1:
-            if kind == FLOAT:
-                return Value(FLOAT, (self.assign(f"call double @llvm.fabs.f64(double {numbers[0]})"),))
-            negative = self.assign(f"sub i64 0, {numbers[0]}")
-            return Value(INT, (self.extreme(INT, [numbers[0], negative], "gt"),))
-        if function is int and len(values) == 1:
-            return Value(
-                INT, (self.assign(f"fptosi double {numbers[0]} to i64") if kind == FLOAT else numbers[0],)
-            )
-        floats = [self.converted(Value(kind, (number,)), FLOAT, node) for number in numbers]
-        if function is float and len(values) == 1:
-            return Value(FLOAT, (floats[0],))
-        if function is math.isfinite and len(values) == 1:
-            size = self.assign(f"call double @llvm.fabs.f64(double {floats[0]})")
-            return Value(BOOL, (self.assign(f"fcmp olt double {size}, {float_text(math.inf)}"),))
-        if name in INTRINSICS and len(values) == 1 and function is getattr(math, name):
-            return Value(FLOAT, (self.assign(f"call double @{INTRINSICS[name]}.f64(double {floats[0]})"),))
-        if LIBRARY.get(name) == len(values) and function is getattr(math, name):
-            self.unit.library.add(name)
-            arguments = ", ".join(f"double {number}" for number in floats)
-            return Value(FLOAT, (self.assign(f"call double @{name}({arguments})"),))
+            return self.run_pass(node, values)
+        python = getattr(function, "python", None)
+        if isinstance(python, FunctionType):
+            return self.call_function(node, python, values)
+        for name, known in FUNCTIONS.items():
+            if known is function:
+                return self.call_builtin(node, name, values)
         raise self.refusal(node)
 
-    def extreme(self, kind: str, numbers: Sequence[str], how: str) -> str:
+    def call_builtin(self, node: ast.Call, name: str, values: list[Value]) -> Value:
+        """The result of one of Python's own functions, or of a mathematical one."""
+        kinds = [value.kind for value in values]
+        match name, kinds:
+            case "len", [ArrayKind(axes)] if axes > 0:
+                return Value(INT, values[0].cells[1:2])
+            case "min" | "max", [("i64" | "double") as kind, _, *_] if len(set(kinds)) == 1:
+                numbers = [value.cells[0] for value in values]
+                return self.extreme(kind, numbers, "gt" if name == "max" else "lt")
+            case "abs", ["i64"]:
+                return self.extreme(INT, [values[0].cells[0], *self.negative(values[0], node).cells], "gt")
+            case "int", ["i64"]:
+                return values[0]
+            case "int", ["double"]:
+                return self.new(INT, f"fptosi double {values[0].cells[0]} to i64")
+        if NUMBERS.get(name) != len(values):
+            raise self.refusal(node)
+        floats = [self.converted(value, FLOAT, node) for value in values]
+        if name == "float":
+            return Value(FLOAT, (floats[0],))
+        if name in ("abs", "isfinite"):
+            size = self.assign(f"call double @llvm.fabs.f64(double {floats[0]})")
+            if name == "abs":
+                return Value(FLOAT, (size,))
+            return self.new(BOOL, f"fcmp olt double {size}, {float_text(math.inf)}")
+        symbol = f"{INTRINSICS[name]}.f64" if name in INTRINSICS else name
+        arguments = ", ".join(f"double {number}" for number in floats)
+        return self.new(FLOAT, f"call double @{symbol}({arguments})")
+
+    def extreme(self, kind: str, numbers: Sequence[str], how: str) -> Value:
         """The largest or smallest of some numbers, as Python finds it."""
-        result = numbers[0]
+        result, compare = numbers[0], "fcmp o" if kind == FLOAT else "icmp s"
         for number in numbers[1:]:
-            compare = f"fcmp o{how} double" if kind == FLOAT else f"icmp s{how} i64"
-            better = self.assign(f"{compare} {number}, {result}")
+            better = self.assign(f"{compare}{how} {kind} {number}, {result}")
             result = self.assign(f"select i1 {better}, {kind} {number}, {kind} {result}")
-        return result
+        return Value(kind, (result,))
 
     def call_function(
         self, node: ast.Call, function: Callable[..., Any], values: list[Value]
@@ -701,64 +663,72 @@ class _Code:
         """The result of another function of an ordinary module."""
         declared = declared_kinds(function)
         if len(values) != len(declared):
-            raise self.refusal(node)
-        given = []
-        for value, kind in zip(values, declared, strict=True):
-            given.append(value if kind is None else Value(kind, (self.converted(value, kind, node),)))
+            raise self.refusal(node, f"gives {len(values)} arguments, not {len(declared)}")
+        if function in self.unit.open:
+            raise self.refusal(node, "calls what it stands in, which cannot be lowered")
+        given = [
+            value if kind is None else Value(kind, (self.converted(value, kind, node),))
+            for value, kind in zip(values, declared.values(), strict=True)
+        ]
         name, result = self.unit.lower(function, [value.kind for value in given])
-        kinds = [] if result is None else cells(result)
-        results = self.slot(f"[{max(1, len(kinds))} x i64]")
-        arguments = [f"ptr {results}"]
-        for value in given:
-            arguments += [f"{cell} {part}" for cell, part in zip(cells(value.kind), value.cells, strict=True)]
-        self.lines.append(f"  call void @{name}({', '.join(arguments)})")
+        call = f"call {_returned(result)} @{name}({', '.join(value.text for value in given if value.cells)})"
         if result is None:
-            return None
-        found = []
-        for number, kind in enumerate(kinds):
-            place = self.assign(f"getelementptr i64, ptr {results}, i64 {number}")
-            loaded = self.assign(f"load {INT if kind == BOOL else kind}, ptr {place}")
-            found.append(self.assign(f"trunc i64 {loaded} to i1") if kind == BOOL else loaded)
-        return Value(result, tuple(found))
+            return self.emit(call)
+        whole, count = self.assign(call), len(cells(result))
+        parts = (self.assign(f"extractvalue {_returned(result)} {whole}, {k}") for k in range(count))
+        return Value(result, tuple(parts))
 
-    def run_pass(self, values: list[Value]) -> None:
+    def run_pass(self, node: ast.Call, values: list[Value]) -> None:
         """Call a pass by its address, with the addresses of its arrays."""
-        address, n, *arrays = values
-        function = self.assign(f"inttoptr i64 {address.cells[0]} to ptr")
-        arguments = [f"i64 {n.cells[0]}", *(f"ptr {array.cells[0]}" for array in arrays)]
-        self.lines.append(f"  call void {function}({', '.join(arguments)})")
+        match [value.kind for value in values]:
+            case ["i64", "i64", ArrayKind(), *arrays] if all(isinstance(kind, ArrayKind) for kind in arrays):
+                function = self.assign(f"inttoptr i64 {values[0].cells[0]} to ptr")
+                arguments = [f"i64 {values[1].cells[0]}", *(f"ptr {value.cells[0]}" for value in values[2:])]
+                self.emit(f"call void {function}({', '.join(arguments)})")
+            case _:
+                raise self.refusal(node, "does not give an address, a number of segments, and arrays")
 
     def workspace(self, node: ast.Call) -> Value:
         """A new array, which ends with the function."""
         if self.loops or len(node.args) != 1:
-            raise self.refusal(node, "may only stand outside of loops")
-        shape, slot = self.shape(node.args[0]), self.slot("ptr", "null")
+            raise self.refusal(node, "is not by its shape alone, or stands in a loop")
+        slot = self.slot("ptr")
+        self.stack.append(f"  store ptr null, ptr {slot}")
         self.workspaces.append(slot)
+        shape = self.shaped("", node).cells[1:]
         pointer = self.assign(f"call ptr @calloc(i64 {self.product(shape)}, i64 {NUMBER_BYTES})")
-        self.lines.append(f"  store ptr {pointer}, ptr {slot}")
+        self.emit(f"store ptr {pointer}, ptr {slot}")
         return Value(ArrayKind(len(shape)), (pointer, *shape))
 
-    def shape(self, node: ast.expr) -> list[str]:
-        """The shape that an integer or a tuple of integers gives."""
-        value = self.value(node)
-        if any(cell != INT for cell in cells(value.kind)):
-            raise self.refusal(node, "is no shape")
-        return list(value.cells)
+
+def _refusal(function: Callable[..., Any], line: int, text: str, why: str) -> LoweringError:
+    file = Path(function.__code__.co_filename).name
+    return LoweringError(f"{file}, line {line}: '{text}' {why}. {ALLOWED}")
 
 
-ALLOWED = (
-    "Allowed: floats, integers, bools, arrays, tuples of these; assignments, if, while, for over a range, "
-    "return of numbers, arithmetic and comparisons, indices and slices without gaps, reshape, np.empty and "
-    "np.zeros outside of loops, min, max, abs, int, float, len, math, and calls of compiled functions."
-)
-_BUILTINS: dict[str, Any] = {function.__name__: function for function in (min, max, abs, int, float, len)}
-
-
-def declared_kinds(function: Callable[..., Any]) -> list[str | None]:
-    """Kinds of the parameters that are annotated as numbers; None of those that are seen by their values."""
+def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
+    """The function as it stands in its file."""
     code = function.__code__
-    annotations = function.__annotations__
-    return [SCALAR_KINDS.get(annotations.get(name)) for name in code.co_varnames[: code.co_argcount]]
+    try:
+        tree = _definitions(code.co_filename)[code.co_firstlineno]
+    except (OSError, ValueError, SyntaxError, KeyError):
+        tree = None
+    if tree is None or tree.name != code.co_name:
+        raise _refusal(function, code.co_firstlineno, code.co_name, "is no function that stands there")
+    return tree
+
+
+@cache
+def _definitions(file: str) -> dict[int, ast.FunctionDef]:
+    """Functions of a file by their first line, decorators included."""
+    nodes = ast.walk(ast.parse(Path(file).read_bytes()))
+    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
+    return {min(part.lineno for part in (node, *node.decorator_list)): node for node in functions}
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a module's value, or a constant, is a number that has a kind."""
+    return type(value) in SCALAR_KINDS and not (type(value) is int and abs(value) > LARGEST_INTEGER)
 
 
 def _constant(value: float) -> Value:
@@ -766,22 +736,15 @@ def _constant(value: float) -> Value:
     return Value(kind, (float_text(value) if kind == FLOAT else str(value).lower(),))
 
 
-def _named(kind: Kind) -> str:
-    match kind:
-        case ArrayKind(axes):
-            return f"an array with {axes} axes"
-        case TupleKind(parts):
-            return f"a tuple ({', '.join(map(_named, parts))})"
-    return NAMES[kind]
+def _struct(types: Sequence[str]) -> str:
+    return f"{{ {', '.join(types)} }}"
 
 
-def _breaks(body: Sequence[ast.stmt]) -> bool:
-    """Whether a loop's body may end the loop."""
-    return any(isinstance(node, ast.Break) for statement in body for node in ast.walk(statement))
+def _returned(kind: Kind | None) -> str:
+    """LLVM's type of what a function returns."""
+    return "void" if kind is None else _struct(cells(kind))
 
 
-def _loaded(target: ast.Name | ast.Subscript) -> ast.expr:
-    """A target of an assignment as an expression."""
-    if isinstance(target, ast.Name):
-        return ast.copy_location(ast.Name(target.id, ast.Load()), target)
-    return ast.copy_location(ast.Subscript(target.value, target.slice, ast.Load()), target)
+def _parameters(kinds: Sequence[Kind]) -> Value:
+    kind = TupleKind(tuple(kinds))
+    return Value(kind, tuple(f"%p{number}" for number in range(len(cells(kind)))))

@@ -60,7 +60,20 @@ def lower(
     functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
     unit = _Unit(functions, widths, slots, lanes)
     bodies = [unit.pass_function(name, signature) for name, signature in passes.items()]
-    return "\n".join([*unit.declarations(), *bodies])
+    return "\n".join([*declarations(lanes), *bodies])
+
+
+def declarations(lanes: int = 1) -> list[str]:
+    """Every function that may be called from outside a module."""
+    kind, suffix = ("double", "f64") if lanes == 1 else (f"<{lanes} x double>", f"v{lanes}f64")
+    lines = [f"declare {kind} @{name}.{suffix}({kind})" for name in INTRINSICS.values()]
+    lines += [
+        f"declare double @{name}({', '.join(['double'] * count)}) nounwind willreturn memory(none)"
+        for name, count in LIBRARY.items()
+    ]
+    if lanes > 1:
+        lines.append(f"declare i1 @llvm.vector.reduce.and.v{lanes}i1(<{lanes} x i1>)")
+    return lines
 
 
 class _Unit:
@@ -76,18 +89,6 @@ class _Unit:
         self.functions, self.widths, self.slots, self.lanes = functions, widths, slots, lanes
         self.type = "double" if lanes == 1 else f"<{lanes} x double>"
         self.flag = "i1" if lanes == 1 else f"<{lanes} x i1>"
-
-    def declarations(self) -> list[str]:
-        """Every function that may be called from outside this module."""
-        suffix = "f64" if self.lanes == 1 else f"v{self.lanes}f64"
-        lines = [f"declare {self.type} @{name}.{suffix}({self.type})" for name in INTRINSICS.values()]
-        lines += [
-            f"declare double @{name}({', '.join(['double'] * count)}) nounwind willreturn memory(none)"
-            for name, count in LIBRARY.items()
-        ]
-        if self.lanes > 1:
-            lines.append(f"declare i1 @llvm.vector.reduce.and.v{self.lanes}i1({self.flag})")
-        return lines
 
     def constant(self, value: float) -> str:
         """A number, the same in every lane."""
@@ -147,6 +148,7 @@ class _Code:
         self.lines: list[str] = []
         self.results: list[tuple[str, str]] = []
         self.scope: dict[str, Any] = {}
+        self.open: list[str] = []
         self.index = "%i"
         self.label = "entry"
         self.count = 0
@@ -177,10 +179,12 @@ class _Code:
         """Lower statements up to a return; the values that it returns."""
         for statement in statements:
             if isinstance(statement, ast.Return):
-                parts = statement.value.elts if isinstance(statement.value, ast.Tuple) else [statement.value]
-                return [self.value(part) for part in parts if part is not None]
+                if statement.value is None:
+                    break
+                several = isinstance(statement.value, ast.Tuple)
+                return self.several(statement.value) if several else [self.value(statement.value)]
             self.statement(statement)
-        raise LoweringError("a function without a return cannot be lowered")
+        raise LoweringError("a function that returns nothing cannot be lowered")
 
     def statement(self, statement: ast.stmt) -> None:
         """Lower an assignment or an ``if``; a docstring is passed over."""
@@ -215,23 +219,25 @@ class _Code:
             return list(self.scope[node.id])
         if isinstance(node, ast.Tuple):
             return [self.value(part) for part in node.elts]
-        if (
-            isinstance(node, ast.Call)
-            and isinstance(node.func, ast.Name)
-            and node.func.id in self.unit.functions
-        ):
-            function = self.unit.functions[node.func.id]
-            if node.keywords or len(node.args) != len(function.args.args):
-                raise _refusal(node)
-            return self.inlined(function, node.args)
-        raise _refusal(node)
+        return self.inlined(node, of_several=True)
 
-    def inlined(self, function: ast.FunctionDef, arguments: Sequence[ast.expr]) -> list[str]:
-        """The results of a function of the text, whose body is put here."""
+    def inlined(self, node: ast.expr, of_several: bool) -> list[str]:
+        """The results of a call of a function of the text, whose body is put here."""
+        name = node.func.id if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) else ""
+        function = self.unit.functions.get(name)
+        if not isinstance(node, ast.Call) or function is None or node.keywords:
+            raise _refusal(node)
+        returned = next((part.value for part in function.body if isinstance(part, ast.Return)), None)
+        if len(node.args) != len(function.args.args) or isinstance(returned, ast.Tuple) != of_several:
+            raise _refusal(node)
+        if name in self.open:
+            raise _refusal(node, "calls what it stands in, and ")
         outside = self.scope
-        values = [self.value(argument) for argument in arguments]
+        values = [self.value(argument) for argument in node.args]
         self.scope = dict(zip((arg.arg for arg in function.args.args), values, strict=True))
+        self.open.append(name)
         results = self.body(function.body)
+        self.open.pop()
         self.scope = outside
         return results
 
@@ -368,7 +374,9 @@ class _Code:
         return self.assign(f"call {kind} @{INTRINSICS[name]}.{suffix}({kind} {value})")
 
     def call(self, node: ast.Call) -> str:
-        """The value of a call of a function of one number or two, or of ``min`` and ``max`` of several."""
+        """The value of a call: of a function above, of one of a few numbers, of ``min`` and ``max``."""
+        if isinstance(node.func, ast.Name) and node.func.id in self.unit.functions:
+            return self.inlined(node, of_several=False)[0]
         if node.keywords or not node.args:
             raise _refusal(node)
         values = [self.value(argument) for argument in node.args]
