@@ -32,7 +32,7 @@ from statics import (
 settings.register_profile("same_every_time", derandomize=True, deadline=None)
 settings.register_profile("explore", derandomize=False, deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same_every_time"))
-# A shell that starts a command in the background has it ignore Ctrl-C, and all that it starts: tests of Ctrl-C
+# A shell that starts a command in the background has it and its children ignore Ctrl-C: tests of Ctrl-C
 # would wait in vain.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
