@@ -17,7 +17,7 @@ from statics.scene import Scene
 MOST_COORDINATES = 400
 """Most coordinates of an arm whose modes are asked for: they are all found at once, in some seconds."""
 FEW_COORDINATES = 64
-"""Coordinates up to which rates are found with kernels that are not compiled, in a second or less."""
+"""Coordinates up to which rates are found for a table, where each effect left out is another structure."""
 MOST_DENSE = 128
 """Most coordinates whose linearized motion is written out as a matrix."""
 SMALL = 1e-6

@@ -6,9 +6,11 @@ that shape its text. A warm start finds its text and imports no sympy.
 
 import ast
 import ctypes
+import gc
 import hashlib
 import platform
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
@@ -59,8 +61,21 @@ class Family:
         from statics.kernels.printing import module_text
 
         module, _, function = self.derive.partition(":")
-        forces, steps = getattr(import_module(module), function)(structure)
-        return module_text(self.title, forces, structure.names, steps)
+        with _without_garbage_collection():
+            forces, steps = getattr(import_module(module), function)(structure)
+            return module_text(self.title, forces, structure.names, steps)
+
+
+@contextmanager
+def _without_garbage_collection() -> Iterator[None]:
+    """Look for no garbage within: what sympy makes lives on, and to look it through takes a seventh."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 Loader = Callable[[Structure, Family], "Kernel"]
