@@ -38,6 +38,8 @@ def choose(
     scene = dynamics.scene
     if scene.arm.massless_nodes:
         return Choice("chain", "some nodes carry no mass, which no other method can do with")
+    if any(kind.rubs for kind in scene.cable_kinds):
+        return Choice("chain", "cables rub, and what holds one that sticks is stiff")
     if dissipated_by(scene) and dynamics.size > FEW:
         return Choice("chain", f"the scene is damped, and {dynamics.size} coordinates make it stiff")
     if dissipated_by(scene):
