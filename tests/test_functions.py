@@ -270,6 +270,12 @@ def test_no_workspace_outlives_its_function() -> None:
     assert getrusage(RUSAGE_SELF).ru_maxrss - before < 4000 * kilobyte
 
 
+def test_every_workspace_that_may_not_come_to_be_is_nothing_at_first() -> None:
+    """What would be released instead cannot be told."""
+    text, _ = lower_function(c.workspaces.python, [INT, FLOAT])
+    assert text.count("store ptr null") == text.count("call ptr @calloc") == 5
+
+
 def test_a_call_leaves_no_object_behind() -> None:
     row = np.ones(3)
     c.calls(0.5, 2, row)
