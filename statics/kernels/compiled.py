@@ -151,7 +151,7 @@ class _Code:
         """Run the code with these cells of arguments; returns what the function does."""
         try:
             arguments = self.pack(*given)
-        except (struct.error, OverflowError) as error:
+        except struct.error as error:
             raise TypeError(f"compiled code takes numbers as annotated, within 64 bits: {error}") from None
         results = bytes(self.results.size)
         self.entry(arguments, results)
