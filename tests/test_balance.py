@@ -6,6 +6,7 @@ from conftest import rone2012
 
 from statics import Outcome, Scene, StaticSolver
 from statics.derivation import virtual_work
+from statics.kernels import loading
 from statics.kernels.loading import Kernel, load
 from statics.passes import search
 from statics.passes.pseudo_transient import find_balance
@@ -17,6 +18,7 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Kernel:
     """The kernel of the paper's arm as it would be if no potential of it were known."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(virtual_work, "have_potentials", lambda _groups, _coordinates: False)
+        patch.setattr(loading, "_loaded", {})
         patch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path_factory.mktemp("kernels") / "apart"))
         kernel = load(rone2012().structure, REST)
     assert "negative_pivots" not in kernel.text
