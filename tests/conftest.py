@@ -4,6 +4,8 @@ import os
 import signal
 from pathlib import Path
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin: on small matrices they only cost
+
 import numpy as np
 import pytest
 from hypothesis import settings

@@ -18,6 +18,7 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Kernel:
     """The kernel of the paper's arm as it would be if no potential of it were known."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(virtual_work, "have_potentials", lambda _groups, _coordinates: False)
+        patch.setattr(loading, "_loaded", {})
         patch.setenv("CONTINUUM_DYN_CACHE", str(tmp_path_factory.mktemp("kernels") / "apart"))
         patch.setattr(loading, "_loaded", {})
         kernel = load(rone2012().structure, REST)

@@ -1,4 +1,4 @@
-"""The chain's equations of motion are those of the whole arm by sympy's KanesMethod."""
+"""The chain's equations of motion are those of the whole arm by Kane's method, as sympy derives them."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,7 +23,8 @@ from whole_arm import (
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.passes.motion_passes import MOTION
 from continuum_dyn.scenario.intervals import Interval
-from statics.arm import Cable
+from statics.arm import Base, Cable, Payload
+from statics.effects import DiskLoad, DiskLoads
 from statics.equilibria import StaticSolver
 from statics.kernels.loading import load, load_interpreted
 from statics.passes.rest_passes import REST
@@ -57,6 +58,43 @@ def chain_accelerations(scene: Scene, q: np.ndarray, u: np.ndarray) -> np.ndarra
 
 def kane_accelerations(scene: Scene, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     return whole_arm.accelerations(whole_arm.whole_arm(scene), q, u, tension_at(scene))
+
+
+# ---- the whole arm ----
+
+
+def with_everything(disks: int, subsegments: int) -> Scene:
+    """All that the whole arm knows: its base is free, a payload is on its last disk, a load follows it."""
+    scene = tapered_scene(disks, subsegments)
+    payloads = (Payload(disks, 0.01, 1e-6, (0.005, -0.003)),)
+    loads = DiskLoads((DiskLoad(1, (-0.3, 0.5), -0.01), DiskLoad(disks, (0.4, -0.7), 0.02, follower=True)))
+    arm = replace(scene.arm, payloads=payloads, base=Base(0.03, -0.02, 0.7))
+    return Scene(arm, (*scene.effects, loads))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        full_scene(2),
+        with_everything(1, 2),
+        *(pytest.param(scene, marks=pytest.mark.slow) for scene in (stiff_scene(3), tapered_scene(3))),
+        pytest.param(with_everything(2, 1), marks=pytest.mark.slow),
+        pytest.param(spanned_scene(2, 2), marks=pytest.mark.slow),
+    ],
+)
+def test_equations_by_numbers_are_those_that_sympys_kanes_method_derives(scene: Scene) -> None:
+    arm = whole_arm.whole_arm(scene)
+    if arm.base is not None:
+        arm = replace(arm, base=np.array([arm.base[0], (0.4, -0.6, 5.0)]))
+    tension = tension_at(scene)
+    for seed in range(3):
+        q, u = random_state(scene, seed)
+        mass, forcing = whole_arm.free_mass_and_forcing(arm, q, u, tension)
+        derived_mass, derived_forcing = whole_arm.derived_mass_and_forcing(arm, q, u, tension)
+        np.testing.assert_allclose(mass, derived_mass, rtol=1e-12, atol=1e-13 * np.abs(mass).max())
+        size = np.abs(derived_forcing)[: q.size].reshape(-1, arm.n).max(axis=1).repeat(arm.n)
+        np.testing.assert_allclose(forcing[: q.size] / size, derived_forcing[: q.size] / size, 0, 1e-12)
+        np.testing.assert_allclose(forcing[q.size :], derived_forcing[q.size :], rtol=1e-11)
 
 
 # ---- accelerations ----

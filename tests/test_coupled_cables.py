@@ -28,7 +28,7 @@ TENSION, RUBS = CableKind(), CableKind(rubs=True)
 LENGTH, BOTH = CableKind(driven_by_length=True), CableKind(driven_by_length=True, rubs=True)
 KINDS = [(RUBS,), (LENGTH,), (BOTH,), (BOTH, TENSION, RUBS)]
 ON_ANY_MESH = [
-    pytest.param(kinds, subsegments, marks=pytest.mark.slow if subsegments == 2 else ())
+    pytest.param(kinds, subsegments, marks=pytest.mark.slow if subsegments == 2 or kinds == (BOTH,) else ())
     for kinds in KINDS
     for subsegments in (1, 2)
 ]
@@ -98,7 +98,9 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
         assert core > 0.0
 
 
-@pytest.mark.parametrize("kinds", KINDS)
+@pytest.mark.parametrize(
+    "kinds", [pytest.param(kinds, marks=pytest.mark.slow if kinds == (BOTH,) else ()) for kinds in KINDS]
+)
 def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...]) -> None:
     scene = scene_of(kinds, moves=True)
     dynamics, span = Dynamics(scene), Interval(0.0, 1.0, pieces_of(scene, drive_of(kinds)))

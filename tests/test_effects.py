@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from conftest import UPPER
 from one_of_each import ONE_OF_EACH
+from passes_by_hand import Passes
 from whole_arm import random_state
 
 from continuum_dyn.effects import (
@@ -16,9 +17,7 @@ from continuum_dyn.effects import (
     QuadraticDrag,
 )
 from continuum_dyn.equations.virtual_power import derive_dynamics, partial_velocity
-from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.passes.motion_passes import MOTION
-from continuum_dyn.scenario.intervals import Interval
 from statics import (
     Arm,
     DiskLoad,
@@ -32,6 +31,7 @@ from statics.arm import CableKind
 from statics.derivation.segment import DiskSymbols, SegmentSymbols
 from statics.derivation.virtual_work import collect, partial_displacement
 from statics.effects import Effect
+from statics.kernels.loading import load_interpreted
 from statics.passes.rest_passes import REST
 from statics.quantities import QUANTITIES
 
@@ -89,7 +89,7 @@ def test_effect_names_its_quantities_and_its_source(effect: Effect) -> None:
 
 @pytest.mark.parametrize("name", EFFECTS)
 def test_effect_left_out_leaves_no_trace_in_the_generated_source(name: str) -> None:
-    source = MOTION.write(everything_but(name).structure)
+    source = load_interpreted(everything_but(name).structure, MOTION).text
     found = [trace for trace in TRACES[name] if trace in source]
     assert not found
 
@@ -106,23 +106,22 @@ def symbols_of(effect: Effect) -> SegmentSymbols | DiskSymbols:
 
 
 def test_effects_that_are_there_leave_their_traces() -> None:
-    source = MOTION.write(Scene(ARM, ONE_OF_EACH).structure)
+    source = load_interpreted(Scene(ARM, ONE_OF_EACH).structure, MOTION).text
     assert not [trace for traces in TRACES.values() for trace in traces if trace not in source]
 
 
-def rate_of(scene: Scene) -> np.ndarray:
-    """dy/dt of one state that moves."""
-    q, u = random_state(scene, seed=1)
-    y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
-    pieces = np.array([[0.0, 1.3, 0.0, 0.0, 0.0, 0.0]])
-    return Dynamics(scene).rate(0.0, y, Interval(0.0, 1.0, pieces))
+def balance_of(scene: Scene) -> np.ndarray:
+    """What one state that moves lacks for balance, and its powers."""
+    passes, (q, u) = Passes(scene, MOTION, load_interpreted), random_state(scene, seed=1)
+    powers = passes.motion(q, u, 100.0 * u, np.array([1.3]))
+    return np.append(passes.residual(), [*powers.values()])
 
 
 @pytest.mark.parametrize("effect", WITHOUT_EFFECT, ids=lambda effect: effect.name)
 def test_effect_with_parameters_of_zero_is_no_effect(effect: Effect) -> None:
     without = everything_but(effect.name)
-    found = rate_of(Scene(ARM, (*without.effects, effect)))
-    np.testing.assert_allclose(found, rate_of(without), rtol=1e-11)
+    found = balance_of(Scene(ARM, (*without.effects, effect)))
+    np.testing.assert_allclose(found, balance_of(without), rtol=1e-11)
 
 
 def test_statics_knows_nothing_of_motion() -> None:

@@ -70,24 +70,20 @@ def energy_error(found: Trajectory) -> np.ndarray:
 
 @pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, bare_scene, heavy_scene])
 def test_momenta_and_slopes_are_those_of_the_whole_arm(scene_of: Callable[[int], Scene]) -> None:
-    """Momenta M u by sympy's KanesMethod, dT/dq and dV/dq by complex steps of the energies."""
+    """Momenta M u, dT/dq and dV/dq of all bodies."""
     scene = undamped(scene_of(3))
     arm, tension = whole_arm.whole_arm(scene), np.array([1.3, 0.7])[: scene.cables]
     kernel, *tables = Dynamics(scene).midpoint
     for seed in range(5):
         q, u = random_state(scene, seed)
         rates = u.T.ravel()
-
-        def kinetic(q: np.ndarray, u: np.ndarray = u, rates: np.ndarray = rates) -> Any:
-            return rates @ whole_arm.mass_and_forcing(arm, q, u, tension)[0] @ rates / 2
-
         by_q, p, slope = np.empty_like(q), np.empty_like(q), np.empty_like(q)
         chain, arm_tables = np.empty((len(q), kernel.widths["chain"])), (np.empty((0, 6)), *tables)
         scalars = np.empty(SCALARS)
         momentum_passes(kernel.passes, q, u, tension, arm_tables, chain, by_q, p, slope, scalars)
         mass = whole_arm.mass_and_forcing(arm, q, u, tension)[0]
         assert relative_error(p, (mass @ rates).reshape(-1, arm.n).T) < 1e-13
-        assert relative_error(slope, gradient(kinetic, q)) < 1e-12
+        assert relative_error(slope, whole_arm.kinetic_slope(arm, q, u)) < 1e-12
         potential = gradient(lambda q: whole_arm.potential_energy(arm, q, tension), q)
         assert relative_error(by_q, potential) < 1e-12
 

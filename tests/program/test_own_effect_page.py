@@ -3,11 +3,12 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import walk_through
-from walk_through import COMMAND_LINE, PACKAGES, Block, perform
+from walk_through import PACKAGES, Block, perform
 
 PAGE = walk_through.page("own_effect.md")
 
@@ -27,18 +28,29 @@ duration = 1.0
 """
 """Masses as the lengths of core that disks stand for: then all are held alike for their mass."""
 
-FREQUENCIES = """
+ANSWERS = """
 import json, sys
+from typer.testing import CliRunner
 from continuum_dyn import load_scenario
+from continuum_dyn.cli import app
 from continuum_dyn.modes import modes_at_rest
-print(json.dumps([[mode.frequency for mode in modes_at_rest(load_scenario(f)).modes] for f in sys.argv[1:]]))
-"""
-
-QUANTITIES = """
 from statics import Arm
 from statics.effects import ElasticFoundation
-print(set(ElasticFoundation(6.0e3).columns(Arm(4, 0.02))), set(ElasticFoundation.quantities))
+
+def printed(*arguments):
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+scenario, *swinging = sys.argv[1:]
+print(json.dumps({
+    "run": json.loads(printed("run", "--json", scenario)),
+    "explain": printed("explain", scenario),
+    "frequencies": [[mode.frequency for mode in modes_at_rest(load_scenario(f)).modes] for f in swinging],
+    "quantities": [list(ElasticFoundation(6.0e3).columns(Arm(4, 0.02))), list(ElasticFoundation.quantities)],
+}))
 """
+"""All that is asked of the program in the copy, in one process."""
 
 
 def blocks() -> list[Block]:
@@ -62,12 +74,16 @@ def run(program: Path, *arguments: str) -> str:
     return walk_through.run(program, *arguments, CONTINUUM_DYN_CACHE=kernels)
 
 
-def command_line(program: Path, *arguments: str) -> str:
-    return run(program, *COMMAND_LINE, *arguments)
-
-
 def said(pattern: str) -> str:
     return walk_through.said(PAGE, pattern)
+
+
+@pytest.fixture(scope="module")
+def answers(program: Path) -> dict[str, Any]:
+    moduli = {"without.toml": 0.0, "within.toml": 6.0e3}
+    for name, modulus in moduli.items():
+        (program / name).write_text(SWINGING.replace("MODULUS", str(modulus)), encoding="utf-8")
+    return json.loads(run(program, "-c", ANSWERS, said(r"`continuum-dyn run (\S+)` brings the tip"), *moduli))
 
 
 def test_effect_takes_one_file_one_registry_line_and_its_glossary_entries() -> None:
@@ -79,9 +95,8 @@ def test_effect_takes_one_file_one_registry_line_and_its_glossary_entries() -> N
     assert [line[0] for line in registry.text.splitlines()] == [" ", "+"]
 
 
-def test_scenario_of_the_walk_through_rests_where_the_page_says(program: Path) -> None:
-    scenario = said(r"`continuum-dyn run (\S+)` brings the tip")
-    answer = json.loads(command_line(program, "run", "--json", scenario))
+def test_scenario_of_the_walk_through_rests_where_the_page_says(answers: dict[str, Any]) -> None:
+    answer = answers["run"]
     deflection = said(r"to rest at y = (\S+) mm")
     assert answer["outcome"] == "completed"
     assert f"{1e3 * answer['tip'][1]:.4f}" == deflection
@@ -98,22 +113,21 @@ def test_checks_of_the_walk_through_pass(program: Path) -> None:
     assert "2 passed" in run(program, "-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", check)
 
 
-def test_new_effect_is_explained_as_any_other(program: Path) -> None:
-    text = command_line(program, "explain", said(r"`continuum-dyn run (\S+)` brings the tip"))
+def test_new_effect_is_explained_as_any_other(answers: dict[str, Any]) -> None:
+    text = answers["explain"]
     assert "elastic_foundation on each disk" in text
     assert said(r"shows the pair, (P = \S+) along y") in text
     assert "foundation_stiffness (N/m): force of an elastic foundation on a node" in text
 
 
-def test_new_effect_has_a_value_for_each_of_its_quantities(program: Path) -> None:
-    assert run(program, "-c", QUANTITIES).split() == ["{'foundation_stiffness'}"] * 2
+def test_new_effect_has_a_value_for_each_of_its_quantities(answers: dict[str, Any]) -> None:
+    assert answers["quantities"] == [["foundation_stiffness"]] * 2
 
 
-def test_new_effect_raises_the_squares_of_all_frequencies_by_its_stiffness_over_mass(program: Path) -> None:
+def test_new_effect_raises_the_squares_of_all_frequencies_by_its_stiffness_over_mass(
+    answers: dict[str, Any],
+) -> None:
     """M w'' + (K + k l / m M) w = 0: the modes stay, omega^2 grows by k l / m."""
-    moduli = {"without.toml": 0.0, "within.toml": 6.0e3}
-    for name, modulus in moduli.items():
-        (program / name).write_text(SWINGING.replace("MODULUS", str(modulus)), encoding="utf-8")
-    without, within = np.array(json.loads(run(program, "-c", FREQUENCIES, *moduli)))
+    without, within = np.array(answers["frequencies"])
     found = (2.0 * np.pi * within) ** 2 - (2.0 * np.pi * without) ** 2
     np.testing.assert_allclose(found, 6.0e3 * 0.02 / 8.0e-4, rtol=1e-6)

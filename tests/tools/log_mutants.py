@@ -6,6 +6,7 @@ is printed, and the exit status is 1.
 """
 
 import argparse
+import gc
 import os
 import resource
 import signal
@@ -188,6 +189,7 @@ def outcome_in_child(path: Path) -> str:
     read, told = os.pipe()
     child = os.fork()
     if child == 0:
+        gc.freeze()  # what collects garbage would copy the parent's memory page by page
         os.close(read)
         ended = "child broke"
         try:
@@ -234,11 +236,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--first", type=int, default=0, help="number of the first")
     asked = parser.parse_args()
     found: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as name:
         made = originals(Path(name))
-        for number in range(asked.count):
+        for number in range(asked.first, asked.first + asked.count):
             ended = try_mutant(made, Path(name), f"{asked.seed} {number}")
             if ended not in ("read", "refused"):
                 print(f"--- seed {asked.seed}, mutant {number}\n{ended}", flush=True)

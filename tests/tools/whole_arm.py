@@ -1,14 +1,15 @@
-"""The whole arm, twice over, from the paper's formulas alone: an oracle for the program's chain.
+"""The whole arm from the paper's formulas alone: an oracle for the program's chain.
 
-Equations of motion by sympy's KanesMethod, with cables as forces on the disks' holes; potential energy
-by numpy, in complex numbers. Nothing is taken from the program but the numbers of a scene. The paper's
-formulas divide by the curvature, so states must stay away from straight segments.
+Equations of motion and potential energy by numpy, in complex numbers; the former once more by sympy's
+KanesMethod, with cables as forces on the disks' holes, which vouches for those by numpy. Nothing is taken
+from the program but the numbers of a scene. The paper's formulas divide by the curvature, so states must
+stay away from straight segments.
 
 Coordinates q and rates u have shape (n, 1) or (n, 2), one row for each segment: phi = k L, and e = L - L0.
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -409,25 +410,12 @@ def _equations(arm: WholeArm, module: str) -> Callable[..., tuple[Any, Any]]:
     return _kane_function(*structure, arm.base is not None, module)
 
 
-def mass_and_forcing(
+def derived_mass_and_forcing(
     arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """M, shape (q.size, q.size), and f, shape (q.size,), at one state, on a base without acceleration."""
-    mass, forcing = free_mass_and_forcing(arm, q, u, tension)
-    return mass[: q.size, : q.size], forcing[: q.size]
-
-
-def free_mass_and_forcing(
-    arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """M and f with a base's three at the end, where M u' - f is its wrench on the arm."""
+    """M and f as sympy derives them, with a base's three at the end: seconds for a new structure."""
     mass, forcing = _equations(arm, "numpy")(*_arguments(arm, q, u, tension))
     return mass, forcing[:, 0]
-
-
-def accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> np.ndarray:
-    """Time derivative of u by Kane's method, shape of q."""
-    return np.linalg.solve(*mass_and_forcing(arm, q, u, tension)).reshape(-1, arm.n).T
 
 
 def precise_accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> np.ndarray:
@@ -439,6 +427,112 @@ def precise_accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: 
         mass, forcing = _equations(arm, "mpmath")(*numbers)
         solution = mpmath.lu_solve(mass[: q.size, : q.size], forcing[: q.size, 0])
         return np.array(solution, dtype=float).reshape(-1, arm.n).T
+
+
+# ---- equations of motion: Kane's method by numbers, in complex ones ----
+
+
+def mass_and_forcing(
+    arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """M, shape (q.size, q.size), and f, shape (q.size,), at one state, on a base without acceleration."""
+    mass, forcing = free_mass_and_forcing(arm, q, u, tension)
+    return mass[: q.size, : q.size], forcing[: q.size]
+
+
+def free_mass_and_forcing(
+    arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """M and f with a base's three at the end, where M u' - f is its wrench on the arm.
+
+    The same as ``derived_mass_and_forcing``, by partial velocities of every body: derivatives of its pose.
+    """
+    assert np.isrealobj(q), "complex steps do not nest"
+    base, base_rate = np.empty((2, 0)) if arm.base is None else arm.base
+    z, rate = np.append(q.T, base), np.append(u.T, base_rate)
+    partial = gradient(lambda z: bodies(*_at(arm, z)), z)
+    inertia = body_inertia(arm)
+    mass = np.einsum("abi,bi,cbi->ac", partial, inertia, partial)
+    while_coasting = _second_derivative(lambda z: bodies(*_at(arm, z)), z, rate)
+    loads = body_loads(arm, bodies(arm, q)) - inertia * while_coasting
+    forcing = np.einsum("abi,bi->a", partial, loads)
+    pulls = gradient(lambda z: cable_lengths(*_at(arm, z)), z)
+    forcing -= np.einsum("aci,ci->a", pulls, arm.tension_along(tension))
+    (n, relaxation), size = (arm.n, arm.relaxation), q.size
+    forcing[:n] -= arm.EJ * ((q[:, 0] + relaxation * u[:, 0]) / arm.L0 - arm.k0)
+    if arm.extends:
+        forcing[n:size] -= arm.EA / arm.L0 * (q[:, 1] + relaxation * u[:, 1])
+    return mass, forcing
+
+
+def accelerations(arm: WholeArm, q: np.ndarray, u: np.ndarray, tension: np.ndarray) -> np.ndarray:
+    """Time derivative of u by Kane's method, shape of q."""
+    return np.linalg.solve(*mass_and_forcing(arm, q, u, tension)).reshape(-1, arm.n).T
+
+
+def kinetic_slope(arm: WholeArm, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Derivatives of the kinetic energy by the coordinates at fixed rates, shape of q: by differences.
+
+    Of eighth order, and so large that little is lost to rounding; they stay away from straight segments.
+    """
+
+    def kinetic_energy(q: np.ndarray) -> float:
+        return float(np.sum(body_inertia(arm) * directional(lambda q: bodies(arm, q), q, u) ** 2) / 2)
+
+    slope = np.empty(q.shape)
+    for at in np.ndindex(*q.shape):
+        step = np.zeros(q.shape)
+        step[at] = 0.02 * [1.0, arm.L0[0]][at[1]]
+        ahead = [kinetic_energy(q + k * step) - kinetic_energy(q - k * step) for k in (1, 2, 3, 4)]
+        slope[at] = np.dot([4 / 5, -1 / 5, 4 / 105, -1 / 280], ahead) / step[at]
+    return slope
+
+
+def _at(arm: WholeArm, z: np.ndarray) -> tuple[WholeArm, np.ndarray]:
+    """The arm on its base, and its coordinates, of all coordinates in one row."""
+    size = arm.n * (2 if arm.extends else 1)
+    here = arm if arm.base is None else replace(arm, base=np.array([z[size:], arm.base[1]]))
+    return here, z[:size].reshape(-1, arm.n).T
+
+
+def bodies(arm: WholeArm, q: np.ndarray) -> np.ndarray:
+    """x, y, theta of all that has mass, shape (bodies, 3): segments' ends, payloads, points of the core."""
+    x, y, theta = poses(arm, q)
+    at = np.array(arm.carriers, dtype=int) - 1
+    along, across = arm.payload.T[2:]
+    cosine, sine = np.cos(theta[at]), np.sin(theta[at])
+    payloads = x[at] + along * cosine - across * sine, y[at] + along * sine + across * cosine, theta[at]
+    inside = [(*poses_along(arm, q, part), 0 * theta) for part in LOBATTO_INSIDE[: arm.core_points]]
+    return np.concatenate([np.column_stack(part) for part in ((x, y, theta), payloads, *inside)])
+
+
+def body_inertia(arm: WholeArm) -> np.ndarray:
+    """Mass twice, and moment of inertia, of ``bodies``."""
+    m, I = arm.payload.T[:2]  # noqa: E741
+    inside = np.tile(5 / 12 * arm.m_c, arm.core_points)
+    mass = np.concatenate([arm.m, m, inside])
+    return np.column_stack([mass, mass, np.concatenate([arm.I_xx, I, 0 * inside])])
+
+
+def body_loads(arm: WholeArm, pose: np.ndarray) -> np.ndarray:
+    """Force and moment on each of ``bodies``: weights, dead loads, forces that turn with their disk."""
+    loads = body_inertia(arm) * [*arm.g, 0.0]
+    cosine, sine = np.cos(pose[: arm.n, 2]), np.sin(pose[: arm.n, 2])
+    along, across = arm.follower.T
+    turned = np.column_stack([cosine * along - sine * across, sine * along + cosine * across])
+    loads[: arm.n] += np.column_stack([arm.force + turned, arm.moment])
+    return loads
+
+
+def _second_derivative(
+    function: Callable[[np.ndarray], np.ndarray], z: np.ndarray, rate: np.ndarray
+) -> np.ndarray:
+    """Second derivative of a vector in time while z goes on at its rate: by steps of 0.005 rad."""
+    step = 0.005 / max(1e-9, np.abs(rate).max())  # elongations change by less than bends
+    moving = difference_matrix(
+        lambda time: directional(function, z + time * rate, rate).ravel(), np.zeros(1), [step]
+    )
+    return moving.reshape(function(z).shape)
 
 
 # ---- energy: numpy, in complex numbers ----
