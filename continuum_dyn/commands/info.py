@@ -66,6 +66,10 @@ def _facts(log: "Log") -> Iterator[tuple[str, str]]:
     for name in ("static_gap", "tip_error", "mesh_error"):
         if name in given:
             yield name.replace("_", " "), length(given[name])
+    if "bending_strain" in given:
+        yield "bending", f"{100 * given['bending_strain']:.2g} % strain of the core at most"
+    for warning in given.get("warnings", "").splitlines():
+        yield "warning", warning
     yield "solving", f"{duration(given['solve_time'])}"
     cables = f"cables {', '.join(log.cables)}" if log.cables else "no cables"
     yield "arm", f"{arm['disks']} disks, {arm['disks'] * arm['subsegments']} segments, {cables}"

@@ -163,6 +163,8 @@ def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_t
         "segments": arm.segments,
         "tip_error": result.tip_error,
         "mesh_error": None if result.mesh is None else result.mesh.estimate,
+        "bending_strain": result.bending_strain,
+        "warnings": list(result.warnings),
         "solve_time": result.solve_time,
         "wall_time": wall_time,
         "log": str(log),
@@ -237,6 +239,10 @@ def _show(report: dict[str, Any]) -> None:
         _add_motion(table, result)
     if result.tip_error is not None:
         table.add_row("accuracy", _accuracy(result, result.tip_error))
+    if result.bending_strain is not None:
+        table.add_row("bending", f"{100 * result.bending_strain:.2g} % strain of the core at most")
+    for warning in result.warnings:
+        table.add_row("[yellow]warning[/yellow]", escape(warning))
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     if report["comparison"] is not None:
         table.add_row("compared", _comparison_text(report["comparison"], report["source"]))

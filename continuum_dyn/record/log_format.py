@@ -112,6 +112,8 @@ OPTIONAL_ATTRIBUTES: dict[str, type] = {
     "step": float,
     "static_gap": float,
     "tip_error": float,
+    "bending_strain": float,
+    "warnings": str,
     "mesh_error": float,
     "mesh_extrapolated": bool,
 }

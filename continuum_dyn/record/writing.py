@@ -55,7 +55,9 @@ def attributes_of(run: "Run", complete: bool = True) -> dict[str, Any]:
         attributes["default"] = "equilibria"
     if run.scenario.study.motion is not None:
         attributes |= (run.solver or run.scenario.solver).settings
-    for name in ("tip_error", "static_gap"):
+    if run.warnings:
+        attributes["warnings"] = "\n".join(run.warnings)
+    for name in ("tip_error", "static_gap", "bending_strain"):
         if getattr(run, name) is not None:
             attributes[name] = getattr(run, name)
     if run.mesh is not None:

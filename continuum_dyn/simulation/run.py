@@ -1,6 +1,7 @@
 """The answer to a scenario, and the interface that receives a motion's samples while it runs."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -12,6 +13,8 @@ from continuum_dyn.simulation.messages import failure_message
 from continuum_dyn.simulation.rest_gap import has_settled, tip_gap
 from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.stability import Growth
+from continuum_dyn.warnings.collected import warnings_of
+from continuum_dyn.warnings.results import bending_strain
 from statics.equilibria import Equilibrium
 from statics.outcome import Outcome
 
@@ -38,6 +41,16 @@ class Run:
     tip_error: float | None = None
     mesh: Mesh | None = None
     solve_time: float = 0.0
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Words about what is legal but odd, a sentence or two for each."""
+        return warnings_of(self)
+
+    @property
+    def bending_strain(self) -> float | None:
+        """Largest bending strain of a round core; None where its radius is not known."""
+        return bending_strain(self)
 
     @property
     def tips(self) -> np.ndarray | None:

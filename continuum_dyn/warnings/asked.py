@@ -1,0 +1,78 @@
+"""Requests that come to nothing: quantities without an effect, drives without a change, studies in vain."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from continuum_dyn.scenario.profiles import Piecewise
+from continuum_dyn.scenario.scenario import Scenario, dissipated_by
+from statics.arm import RONE2012, Arm
+
+USED_BY = {
+    "youngs_modulus": ("bending", "extension"),
+    "second_moment": ("bending",),
+    "area": ("extension",),
+    "disk_mass": ("gravity", "inertia", "mass_damping"),
+    "disk_inertia": ("rotary_inertia",),
+    "core_density": ("gravity", "inertia", "mass_damping"),
+}
+"""The effects that use a number of the arm."""
+
+
+def unused_numbers(scenario: Scenario) -> Iterator[str]:
+    """Warn of numbers of the arm that no effect of the scene uses; a preset's own may stay."""
+    scene, arm = scenario.scene, scenario.scene.arm
+    for name, effects in USED_BY.items():
+        preset = getattr(arm, name) == RONE2012.get(name)
+        of_core = name == "area" and arm.core_density is not None
+        if arm.knows(name) and not (preset or of_core or any(map(scene.has, effects))):
+            would = " and ".join(effects)
+            yield f"[arm] {name} is given, and no effect uses it: {would} would. Add one, or leave it out."
+
+
+def core_counted_twice(scenario: Scenario) -> Iterator[str]:
+    """Warn of a core's own mass beside disks that hold it already."""
+    arm: Arm = scenario.scene.arm
+    if arm.core_density is not None and arm.disk_mass == RONE2012["disk_mass"]:
+        yield (
+            "core_density gives the core a mass of its own, and the preset's disk_mass, "
+            f"{arm.disk_mass:g} kg, holds the core's already: it counts twice. Give the disks' alone."
+        )
+
+
+def drives_without_a_change(scenario: Scenario) -> Iterator[str]:
+    """Warn of changes after the end of the run, and of a step response in which nothing steps."""
+    study = scenario.study.motion
+    if study is None:
+        return
+    drives = _named_drives(scenario)
+    for name, profile in drives:
+        late = [piece[0] for piece in profile.pieces()[1:] if piece[0] >= study.duration]
+        if late:
+            end = study.duration
+            yield f"{name} changes at {late[0]:g} s, and the run ends at {end:g} s: none of it shows."
+    if study.settles and drives and not any(_changes(profile) for _, profile in drives):
+        yield 'a step response to constant inputs: nothing steps. Give a tension with profile = "step".'
+    if study.settles and not dissipated_by(scenario.scene):
+        yield (
+            "nothing takes energy from the motion, so that it cannot settle. Add material_damping, "
+            "linear_drag or mass_damping to [effects]."
+        )
+
+
+def _named_drives(scenario: Scenario) -> list[tuple[str, Piecewise]]:
+    cables = (f"the drive of cable '{cable.name}'" for cable in scenario.scene.arm.cables)
+    loads = (f"load factor {number}" for number in range(1, len(scenario.load_factors) + 1))
+    base = (f"[base] {name}" for name in ("x", "y", "angle"))
+    named: list[Any] = []
+    profiles = scenario.drives, scenario.load_factors, scenario.base_motion
+    for names, given in zip((cables, loads, base), profiles, strict=True):
+        named += zip(names, given, strict=False)
+    return named
+
+
+def _changes(profile: Piecewise) -> bool:
+    """Whether a profile has another value at some time."""
+    return any(
+        value != profile.initial or slope != 0.0 or (amplitude != 0.0 and frequency != 0.0)
+        for _, value, slope, amplitude, frequency, _ in profile.pieces()
+    )

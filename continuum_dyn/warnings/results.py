@@ -1,0 +1,102 @@
+"""Results that should be looked at twice: strains, tolerances above the travel, samples too far apart."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from continuum_dyn.integrators.choice import choose
+from continuum_dyn.integrators.methods import METHODS
+from continuum_dyn.passes.dynamics import Dynamics
+from continuum_dyn.scenario.intervals import cut_into_intervals
+from continuum_dyn.warnings.units import core_radius
+
+if TYPE_CHECKING:
+    from continuum_dyn.simulation.run import Run
+    from continuum_dyn.simulation.trajectory import Trajectory
+
+LARGEST_STRAIN = 0.02
+"""Bending strain above which few cores stay elastic."""
+UNSEEN = 0.05
+"""Largest part of the travel by which a coordinate may stray between samples from what its rates tell."""
+
+OFTEN = 8
+"""Times between samples with such a departure that are more than what follows a jump."""
+
+
+def bending_strain(run: "Run") -> float | None:
+    """Largest bending strain of a round core in all that was computed; None where its radius is not known."""
+    arm = run.scenario.scene.arm
+    radius = core_radius(arm)
+    curvatures = [point.curvature[None] for point in run.equilibria if point.found]
+    if run.trajectory is not None and run.trajectory.time.size:
+        curvatures.append(run.trajectory.curvature)
+    if radius is None or not curvatures:
+        return None
+    rest = np.repeat(arm.per_disk("reference_curvature"), arm.subsegments)
+    strains = np.repeat(radius, arm.subsegments) * np.abs(np.concatenate(curvatures) - rest)
+    return float(strains.max())
+
+
+def strained(run: "Run") -> Iterator[str]:
+    """Warn of strains at which a core yields."""
+    strain = bending_strain(run)
+    if strain is not None and strain > LARGEST_STRAIN:
+        yield (
+            f"the core bends to a strain of {100 * strain:.3g} %, and few materials stay elastic above "
+            f"{100 * LARGEST_STRAIN:g} %: a thinner core of the same stiffness bends as far with less."
+        )
+
+
+def coarser_than_the_travel(run: "Run") -> Iterator[str]:
+    """Warn of tolerances that are larger than all that moves."""
+    if run.trajectory is None or run.trajectory.travel == 0.0:
+        return
+    travel, scenario = run.trajectory.travel, run.scenario
+    named = []
+    if scenario.study.settles:
+        named.append(("settled_within", scenario.settled_within))
+    if scenario.accuracy is not None:
+        named.append(("[accuracy] tip", scenario.accuracy.tip))
+    for name, distance in named:
+        if distance > travel:
+            yield (
+                f"{name} = {distance:.3g} m is above all that the arm moves, {travel:.3g} m: it says "
+                "nothing. "
+                f"{distance:g} mm are {distance / 1e3:g} m."
+            )
+
+
+def samples_too_far_apart(run: "Run") -> Iterator[str]:
+    """Warn of samples between which the arm swings unseen."""
+    moved = run.trajectory
+    if moved is not None and moved.time.size > 2 and (unseen := _unseen(moved)) > UNSEEN:
+        yield (
+            f"between samples, {np.diff(moved.time).max():.2g} s apart, the arm moves by "
+            f"{100 * unseen:.2g} % of its travel unseen: a plot of them shows swings that are not there. "
+            f"Ask for more than the {moved.time.size} samples."
+        )
+
+
+def _unseen(moved: "Trajectory") -> float:
+    """Departure of bend angles from what their rates at two samples tell, over their travel.
+
+    Of all times between samples one of the largest, for a jump of a tension shows in the first ones.
+    """
+    apart = np.diff(moved.time)[:, None]
+    expected = 0.5 * apart * (moved.bend_angle_rate[1:] + moved.bend_angle_rate[:-1])
+    travel = float(np.ptp(moved.bend_angle, axis=0).max())
+    departures = np.sort(np.abs(np.diff(moved.bend_angle, axis=0) - expected).max(axis=1))
+    return float(departures[-min(OFTEN, departures.size)]) / travel if travel else 0.0
+
+
+def explicit_on_a_stiff_arm(run: "Run") -> Iterator[str]:
+    """Warn of a method whose steps a stiff arm keeps short."""
+    solver, study = run.scenario.solver, run.scenario.study.motion
+    if run.trajectory is None or study is None or solver.chooses_method or METHODS[solver.method].implicit:
+        return
+    dynamics, start = Dynamics(run.scenario.scene), run.equilibria[0].coordinates
+    interval = cut_into_intervals(run.scenario.profiles, study.duration)[0]
+    better = choose(dynamics, dynamics.state(start), interval, study.duration)
+    if better.method == "chain":
+        yield f'method "{solver.method}" is explicit, and {better.reason}. Try method = "chain".'
