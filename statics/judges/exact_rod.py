@@ -342,7 +342,7 @@ def _piece_ends(rod: _Rod, loads: np.ndarray, angles: np.ndarray) -> np.ndarray:
     carried = np.broadcast_to(moment, along.shape)
     for _ in range(MAX_SWEEPS):
         before, theta = carried, over_points(rod.rest_bend + carried, UP_TO_POINTS)
-        if np.abs(theta.real).max() > MAX_THETA:
+        if np.abs(np.real(theta)).max() > MAX_THETA:
             break
         cosine, sine = np.cos(theta), np.sin(theta)
         stretch = 1 + rod.softness * (along * cosine + across * sine)
@@ -357,9 +357,9 @@ def _piece_ends(rod: _Rod, loads: np.ndarray, angles: np.ndarray) -> np.ndarray:
 
 def _same(moments: np.ndarray, before: np.ndarray) -> bool:
     """Whether moments differ by rounding alone, and so do their slopes, which are nudged by ``NUDGE``."""
-    pairs = [(moments.real, before.real)]
+    pairs = [(np.real(moments), np.real(before))]
     if np.iscomplexobj(moments):
-        pairs.append((moments.imag / NUDGE, before.imag / NUDGE))
+        pairs.append((np.imag(moments) / NUDGE, np.imag(before) / NUDGE))
     return all(np.abs(one - two).max() <= SWEPT * max(1.0, np.abs(one).max()) for one, two in pairs)
 
 
