@@ -149,3 +149,19 @@ def test_drive_that_starts_gently_from_rest_is_not_stepped_over(method: Method) 
     assert run.trajectory is not None
     assert 0.05 < run.trajectory.time[-1] < 20.0
     assert run.trajectory.tip_speed[-1] > 1e-3
+
+
+def test_what_has_not_settled_says_by_how_much_and_when_it_would() -> None:
+    scenario = load_scenario(SCENARIOS / "step_response_light_damping.toml")
+    run, longer = simulate(scenario), simulate(replace(scenario, study=replace(scenario.study, duration=5.0)))
+    assert run.trajectory is not None
+    assert longer.trajectory is not None
+    assert run.static_gap is not None
+    assert f"{run.static_gap:.2g} m from the final equilibrium" in run.message
+    assert f"moves at {run.trajectory.tip_speed[-1]:.2g} m/s" in run.message
+    assert f"below {scenario.settled_within:.2g} m" in run.message
+    moved, (x, y, _) = longer.trajectory, longer.equilibria[-1].tip
+    away = np.hypot(moved.disk_x[:, -1] - x, moved.disk_y[:, -1] - y)
+    unsettled = np.maximum(away, moved.tip_speed) >= scenario.settled_within
+    foreseen = float(run.message.rsplit(" s", 1)[0].rsplit(" ", 1)[1])
+    assert foreseen == pytest.approx(moved.time[unsettled][-1], rel=0.2)

@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import hypot
+from math import hypot, log
+
+import numpy as np
 
 TipPose = tuple[float, float, float]
 """x, y (m) and theta (rad)."""
@@ -28,3 +30,29 @@ def _from_line(tip: TipPose, start: TipPose, end: TipPose) -> float:
 def has_settled(gap: float, speed: float, within: float) -> bool:
     """Whether the tip is within that distance (m) of its equilibrium, and slower than that per second."""
     return gap < within and speed < within
+
+
+def unsettled_message(time: np.ndarray, gaps: np.ndarray, speeds: np.ndarray, within: float) -> str:
+    """Message about a tip that has not settled: by how much, and when it would at the decay so far.
+
+    ``gaps`` (m) are its distances from the final equilibrium at the times (s), ``speeds`` (m/s) its speeds.
+    """
+    parts, speed = [], speeds[-1]
+    if gaps[-1] >= within:
+        parts.append(f"the tip is {gaps[-1]:.2g} m from the final equilibrium")
+    if speed >= within:
+        parts.append(f"it moves at {speed:.2g} m/s" if parts else f"the tip moves at {speed:.2g} m/s")
+    limit = f"settled is below {within:.2g} m and m/s"
+    return f"{' and '.join(parts)}; {limit}{_settles_at(time, np.maximum(gaps, speeds), within)}"
+
+
+def _settles_at(time: np.ndarray, sizes: np.ndarray, within: float) -> str:
+    """The time at which what decays from the second third of a motion to the last would be small enough."""
+    third = sizes.size // 3
+    if third == 0:
+        return ""
+    before, after = float(sizes[third : 2 * third].max()), float(sizes[-third:].max())
+    if not after < 0.9 * before:
+        return ", and it does not decay"
+    rate = log(before / after) / float(time[-third] - time[third])
+    return f", which it would be after some {time[-1] + log(max(after / within, 1.0)) / rate:.2g} s"

@@ -10,7 +10,7 @@ from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.mesh import Mesh
 from continuum_dyn.simulation.messages import failure_message
-from continuum_dyn.simulation.rest_gap import has_settled, tip_gap
+from continuum_dyn.simulation.rest_gap import has_settled, tip_gap, unsettled_message
 from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.stability import Growth
 from continuum_dyn.warnings.collected import warnings_of
@@ -85,8 +85,13 @@ class Run:
             return run
         if gap is None or end.outcome is not Outcome.COMPLETED:
             return replace(run, outcome=end.outcome, message=failure_message(end, growth))
-        settled = has_settled(gap, float(trajectory.tip_speed[-1]), self.scenario.settled_within)
-        return replace(run, outcome=Outcome.SETTLED if settled else Outcome.NOT_SETTLED)
+        speeds, within = trajectory.tip_speed, self.scenario.settled_within
+        if has_settled(gap, float(speeds[-1]), within):
+            return replace(run, outcome=Outcome.SETTLED)
+        tips = zip(trajectory.disk_x[:, -1], trajectory.disk_y[:, -1], strict=True)
+        gaps = np.array([tip_gap((x, y, 0.0), rests) for x, y in tips])
+        message = unsettled_message(trajectory.time, gaps, speeds, within)
+        return replace(run, outcome=Outcome.NOT_SETTLED, message=message)
 
 
 def interrupted_early(scenario: Scenario) -> Run:
