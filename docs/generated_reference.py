@@ -3,7 +3,7 @@
 Pages ask for a part by the directive ``{generated} PART``, so what they show is what the program has.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from itertools import groupby
 from typing import Any
 
@@ -23,7 +23,7 @@ from continuum_dyn.cli import app
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
 from continuum_dyn.scenario.studies import STUDIES
-from continuum_dyn.scenario_files.schema import json_schema
+from continuum_dyn.scenario_files.keys import KeyTable, key_tables
 from statics.effects import STATIC_EFFECTS
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
@@ -106,112 +106,40 @@ equation. `cables`, `cable_friction` and `loads` are no keys here: they come wit
 `friction`, and `[[loads]]`."""
 
 
+OF_PROFILES = """\
+What drives a motion: a tension, a cable's displacement, a load's factor, the base's `x`, `y` or `angle`.
+A number alone is constant; in a ramp study a list has a value for each point."""
+
+
 def scenario_keys() -> str:
     """Every table of a scenario file: its keys, what they may be, what they mean."""
-    schema = json_schema()
-    definitions = schema["$defs"]
-    parts = ["## The file", _keys(schema, definitions)]
-    for name, key in schema["properties"].items():
-        reference = _reference(key)
-        if name == "effects":
-            parts += ["## `[effects]`", OF_EFFECTS, effects()]
-        elif name == "study":
-            parts += ["## `[study]`", *_studies(key, definitions)]
-        elif reference:
-            heading = f"[[{name}]]" if "items" in key else f"[{name}]"
-            of_table = definitions[reference]
-            told = prose(of_table["description"]).removeprefix(f"{heading}: ")
-            parts += [f"## `{heading}`", told[0].upper() + told[1:], _keys(of_table, definitions)]
-    return "\n\n".join([*parts, "## Profiles", *_profiles(definitions)])
+    parts, chapter = [], ""
+    for found in key_tables():
+        name, _, kind = found.heading.partition(" ")
+        if name == "[effects]":
+            if chapter != name:
+                parts += ["## `[effects]`", OF_EFFECTS, effects()]
+        elif kind and name != "the":
+            if chapter != name:
+                parts += ["## `[study]`"] if name == "[study]" else ["## Profiles", OF_PROFILES]
+            parts += [f"### `{kind if name == '[study]' else found.heading}`", found.text, _keys(found)]
+        else:
+            title = "The file" if name == "the" else f"`{found.heading}`"
+            parts += [f"## {title}", found.text, _keys(found)]
+        chapter = name
+    return "\n\n".join(parts)
 
 
-def _studies(study: dict[str, Any], definitions: dict[str, Any]) -> Iterator[str]:
-    for kind, reference in study["discriminator"]["mapping"].items():
-        found = definitions[reference.rpartition("/")[2]]
-        yield f'### `kind = "{kind}"`\n\n{prose(found["description"])}'
-        yield _keys(found, definitions)
-
-
-def _profiles(definitions: dict[str, Any]) -> Iterator[str]:
-    yield (
-        "What drives a motion: a tension, a cable's displacement, a load's factor, the base's `x`, `y` or "
-        "`angle`. A number alone is constant; in a ramp study a list has a value for each point."
-    )
-    for found in definitions.values():
-        kind = found.get("properties", {}).get("profile", {}).get("const")
-        if kind:
-            yield f'### `profile = "{kind}"`\n\n{prose(found["description"])}'
-            yield _keys(found, definitions)
-
-
-def _keys(of_table: dict[str, Any], definitions: dict[str, Any]) -> str:
-    """The keys of one table, but for the one that tells its kind."""
+def _keys(found: KeyTable) -> str:
     rows = [
-        (
-            code(name),
-            _values(key, definitions),
-            "required" if name in of_table.get("required", []) else _shown(key.get("default", "")),
-            prose(key.get("description", "")).replace("\n", " "),
-        )
-        for name, key in of_table.get("properties", {}).items()
-        if "const" not in key
+        (code(key.name), key.value.replace("profile", "[profile](#profiles)"), *key[2:]) for key in found.keys
     ]
     return table(("key", "value", "by default", "meaning"), rows) if rows else "It has no keys of its own."
 
 
-def _shown(default: Any) -> str:
-    if isinstance(default, bool):
-        return code(str(default).lower())
-    return code(f'"{default}"') if isinstance(default, str) and default else code(default)
-
-
-def _reference(key: dict[str, Any]) -> str:
-    return (key.get("$ref") or key.get("items", {}).get("$ref", "")).rpartition("/")[2]
-
-
-def _values(key: dict[str, Any], definitions: dict[str, Any]) -> str:
-    """What a key may be, in words."""
-    choices = key.get("oneOf") or key.get("anyOf")
-    if choices and any(_is_profile(choice, definitions) for choice in choices):
-        plain = [choice for choice in choices if not _is_profile(choice, definitions)]
-        return ", or ".join([*(_values(choice, definitions) for choice in plain), "[profile](#profiles)"])
-    if choices and "discriminator" in key:
-        return "table"
-    if choices:
-        return ", or ".join(_values(choice, definitions) for choice in choices)
-    if _reference(key):
-        found = definitions[_reference(key)]
-        if "enum" in found:
-            return ", ".join(code(f'"{word}"') for word in found["enum"])
-        return "list of tables" if "items" in key else "table"
-    if "enum" in key:
-        return ", ".join(code(f'"{word}"') for word in key["enum"])
-    return _number_or_text(key, definitions)
-
-
-def _is_profile(choice: dict[str, Any], definitions: dict[str, Any]) -> bool:
-    found = definitions.get(_reference(choice), {})
-    return "const" in found.get("properties", {}).get("profile", {})
-
-
-def _number_or_text(key: dict[str, Any], definitions: dict[str, Any]) -> str:
-    if "const" in key:
-        return code(f'"{key["const"]}"')
-    if key["type"] == "array" and "prefixItems" in key:
-        return f"list of {len(key['prefixItems'])} numbers"
-    if key["type"] == "array":
-        return "list of them"
-    if key["type"] == "object":
-        return f"table: for each name {_values(key['additionalProperties'], definitions)}"
-    words = {"number": "number", "integer": "integer", "string": "text", "boolean": "`true` or `false`"}
-    signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
-    bounds = [f"{sign} {key[name]:g}" for name, sign in signs.items() if name in key]
-    return " ".join([words[key["type"]], ", ".join(bounds)]).strip()
-
-
 def effects() -> str:
     """Every effect: what it does, what it needs of the arm, where it is from; and the keys of its table."""
-    definitions = json_schema()["$defs"]
+    of_effects = {found.heading: found for found in key_tables()}
     parts = []
     for name, effect in EFFECTS.items():
         needs = ", ".join(code(quantity) for quantity in effect.arm_quantities)
@@ -219,8 +147,9 @@ def effects() -> str:
         lines += [f"Needs the arm's {needs}."] if needs else []
         lines += [f"Source: {effect.source}."]
         parts += [f"### `{name}`", prose(_text(effect)), " ".join(lines)]
-        if effect.__name__ in definitions and definitions[effect.__name__].get("properties"):
-            parts.append(_keys(definitions[effect.__name__], definitions))
+        found = of_effects[f"[effects] {name}"]
+        if found.keys:
+            parts.append(_keys(found))
     return "\n\n".join(parts)
 
 

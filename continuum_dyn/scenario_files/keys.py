@@ -1,0 +1,129 @@
+"""The keys of scenario files as tables for people: what each may be, what it is by default, what it means."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from continuum_dyn.effects import EFFECTS
+from continuum_dyn.scenario_files.schema import json_schema
+
+
+class Key(NamedTuple):
+    """A key of a table; ``value`` says what it may be, in words, in which what is typed stands in `ticks`."""
+
+    name: str
+    value: str
+    default: str
+    meaning: str
+
+
+class KeyTable(NamedTuple):
+    """A table of a scenario file, or one kind of it, with what it is for and its keys."""
+
+    heading: str
+    text: str
+    keys: tuple[Key, ...]
+
+
+def key_tables() -> list[KeyTable]:
+    """Every table of a scenario file in the order of the file: effects, studies and profiles one by one."""
+    schema = json_schema()
+    definitions = schema["$defs"]
+    found = [
+        KeyTable("the file", "What stands above all tables, and the tables.", keys_of(schema, definitions))
+    ]
+    for name, key in schema["properties"].items():
+        if name == "effects":
+            found += list(_effects(definitions))
+        elif name == "study":
+            for kind, reference in key["discriminator"]["mapping"].items():
+                of_kind = definitions[reference.rpartition("/")[2]]
+                found.append(_table(f'[study] kind = "{kind}"', of_kind, definitions))
+        elif reference := _reference(key):
+            heading = f"[[{name}]]" if "items" in key else f"[{name}]"
+            found.append(_table(heading, definitions[reference], definitions))
+    return [*found, *_profiles(definitions)]
+
+
+def _table(heading: str, of_table: dict[str, Any], definitions: dict[str, Any]) -> KeyTable:
+    text = of_table["description"].replace("``", "`").removeprefix(f"{heading}: ")
+    return KeyTable(heading, text[0].upper() + text[1:], keys_of(of_table, definitions))
+
+
+def _effects(definitions: dict[str, Any]) -> Iterator[KeyTable]:
+    for name, effect in EFFECTS.items():
+        of_effect = definitions.get(effect.__name__, {})
+        text = (effect.__doc__ or "").partition("\n\n")[0].replace("``", "`")
+        yield KeyTable(f"[effects] {name}", text, keys_of(of_effect, definitions))
+
+
+def _profiles(definitions: dict[str, Any]) -> Iterator[KeyTable]:
+    for found in definitions.values():
+        kind = found.get("properties", {}).get("profile", {}).get("const")
+        if kind:
+            yield _table(f'profile = "{kind}"', found, definitions)
+
+
+def keys_of(of_table: dict[str, Any], definitions: dict[str, Any]) -> tuple[Key, ...]:
+    """The keys of one table of the schema, but for the one that tells its kind."""
+    return tuple(
+        Key(
+            name,
+            _values(key, definitions),
+            "required" if name in of_table.get("required", []) else _shown(key.get("default", "")),
+            key.get("description", "").replace("``", "`").replace("\n", " "),
+        )
+        for name, key in of_table.get("properties", {}).items()
+        if "const" not in key
+    )
+
+
+def _shown(default: Any) -> str:
+    if isinstance(default, bool):
+        return f"`{str(default).lower()}`"
+    if isinstance(default, str):
+        return f'`"{default}"`' if default else ""
+    return f"`{default}`"
+
+
+def _reference(key: dict[str, Any]) -> str:
+    return (key.get("$ref") or key.get("items", {}).get("$ref", "")).rpartition("/")[2]
+
+
+def _values(key: dict[str, Any], definitions: dict[str, Any]) -> str:
+    """What a key may be, in words."""
+    choices = key.get("oneOf") or key.get("anyOf")
+    if choices and any(_is_profile(choice, definitions) for choice in choices):
+        plain = [choice for choice in choices if not _is_profile(choice, definitions)]
+        return ", or ".join([*(_values(choice, definitions) for choice in plain), "profile"])
+    if choices and "discriminator" in key:
+        return "table"
+    if choices:
+        return ", or ".join(_values(choice, definitions) for choice in choices)
+    if _reference(key):
+        found = definitions[_reference(key)]
+        if "enum" in found:
+            return ", ".join(f'`"{word}"`' for word in found["enum"])
+        return "list of tables" if "items" in key else "table"
+    if "enum" in key:
+        return ", ".join(f'`"{word}"`' for word in key["enum"])
+    return _number_or_text(key, definitions)
+
+
+def _is_profile(choice: dict[str, Any], definitions: dict[str, Any]) -> bool:
+    found = definitions.get(_reference(choice), {})
+    return "const" in found.get("properties", {}).get("profile", {})
+
+
+def _number_or_text(key: dict[str, Any], definitions: dict[str, Any]) -> str:
+    if "const" in key:
+        return f'`"{key["const"]}"`'
+    if key["type"] == "array" and "prefixItems" in key:
+        return f"list of {len(key['prefixItems'])} numbers"
+    if key["type"] == "array":
+        return "list of them"
+    if key["type"] == "object":
+        return f"table: for each name {_values(key['additionalProperties'], definitions)}"
+    words = {"number": "number", "integer": "integer", "string": "text", "boolean": "`true` or `false`"}
+    signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
+    bounds = [f"{sign} {key[name]:g}" for name, sign in signs.items() if name in key]
+    return " ".join([words[key["type"]], ", ".join(bounds)]).strip()
