@@ -308,11 +308,16 @@ class StaticSolver:
             if known == name or known.rpartition("_")[0] == name:
                 self.segments[:, column] = values
 
-    def branches(self, inputs: np.ndarray, near: Equilibrium) -> list[Equilibrium]:
-        """Equilibria between which cables that rub may leave the arm, searched from one; else that one."""
-        if not self.rubbing.size:
-            return [near]
-        return [self.solve(inputs, near.coordinates, slip) for slip in Slip]
+    def rests(self, near: Equilibrium) -> list[Equilibrium]:
+        """Where the arm may rest under an equilibrium's inputs, if that one is found: there.
+
+        Cables that rub may leave it anywhere on the way between the branch of cables drawn in and that of
+        cables let out, if there are both; the equilibrium lies on it.
+        """
+        if not self.rubbing.size or not near.found:
+            return [near] if near.found else []
+        drawn_in, let_out = (self.solve(near.inputs, near.coordinates, slip) for slip in Slip)
+        return [point for point in (drawn_in, near, let_out) if point.found]
 
     def warm_up(self) -> None:
         """Compile the kernel, or load it compiled, so that what follows is solving alone."""
