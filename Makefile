@@ -38,6 +38,7 @@ contracts: $(VENV)/dev
 
 benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 	$(BIN)/python benchmarks/equilibria.py
+	$(BIN)/python benchmarks/friction_grid.py
 	$(BIN)/python benchmarks/newton_iteration.py
 	$(BIN)/python benchmarks/lanes.py
 	$(BIN)/python benchmarks/integrators.py

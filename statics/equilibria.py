@@ -6,6 +6,7 @@ not stable, the outcome says so. Under loads without a potential statics alone c
 
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,17 @@ from statics.effects.cable_friction import FAR, SLIP_PART
 from statics.effects.cables import Poses, cable_lengths
 from statics.kernels.loading import Loader, load
 from statics.outcome import Outcome
-from statics.passes import newton, pseudo_transient, search
+from statics.passes import newton, pseudo_transient, search, sticking
 from statics.passes.rest_passes import REST
 from statics.scene import Scene
 
 MAX_ITERATIONS = 200
+MOST_STICKING = 100
+"""Largest number of iterations of a search for cables that stick."""
+SHORTEST_STEP = 1 / 8
+"""Shortest step from the inputs before to those asked, over the whole, of such a search in steps."""
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
-"""Slip lengths over the arm's length that a search with friction goes through, from soft to what they are."""
+"""Slip lengths over the arm's length that a release goes through, from soft to what they are."""
 
 _OUTCOMES = {
     search.STABLE: Outcome.COMPLETED,
@@ -148,6 +153,19 @@ class StaticSolver:
         self.kernel = load(self.scene.structure, REST)
         self.segments = self.scene.table("segment", self.kernel.segment_columns)
         self.disks = self.scene.table("disk", self.kernel.disk_columns)
+        self.rubbing = self._columns_of_rubbing_cables()
+
+    def _columns_of_rubbing_cables(self) -> np.ndarray:
+        """Columns of every cable that rubs, shape (cables that rub, 3), as ``sticking`` takes them."""
+        chain, segment = self.kernel.chain_columns.index, self.kernel.segment_columns.index
+        return np.array(
+            [
+                (chain(f"length_beyond_{c}"), segment(f"length_before_{c}"), segment(f"slip_length_{c}"))
+                for c, kind in enumerate(self.scene.cable_kinds, start=1)
+                if kind.rubs
+            ],
+            dtype=float,
+        )
 
     def solve(
         self,
@@ -160,10 +178,37 @@ class StaticSolver:
         ``inputs`` are the scene's, ``Scene.inputs``; those of a base's motion play no part. ``before`` is
         where the arm comes from, or which way its cables last slipped: only friction asks for it.
         """
-        arm, left = self.scene.arm, list[Equilibrium]()
-        q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start.copy()
+        arm = self.scene.arm
+        q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start
+        self._remember(before)
+        if not self.rubbing.size or isinstance(before, Slip):
+            return self._release(q, inputs)
+        return self._search_from(before, q, inputs)
+
+    def _search_from(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
+        """The stable equilibrium that remembers the one before, by the first search that finds one.
+
+        Failing that, an unstable one, or the search for one where the arm is let go.
+        """
+        stick, stick_exactly = (partial(self._stick, exactly=exactly) for exactly in (False, True))
+        searches = [stick, self._release, stick_exactly, partial(self._stick_step_by_step, before)]
+        if not self.kernel.passes.eliminate_held:  # a release leaves what is unstable, the others do not know
+            searches[:2] = self._release, stick
+        iterations, tried = 0, list[Equilibrium]()
+        for search_from in searches:
+            point = search_from(start, inputs)
+            iterations += point.iterations
+            if point.found and point.stable is not False:
+                return replace(point, iterations=iterations)
+            tried.append(point)
+        best = next((point for point in tried if point.found), tried[searches.index(self._release)])
+        return replace(best, iterations=iterations)
+
+    def _release(self, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
+        """The equilibrium that the arm comes to if let go, through softer slips of cables that rub."""
+        arm, left, q = self.scene.arm, list[Equilibrium](), start.copy()
         ended, iterations, passes = search.NOT_FOUND, 0, self.kernel.passes
-        for slip_part in self._remember(before):
+        for slip_part in SLIP_PARTS if self.rubbing.size else (0.0,):
             self._set("slip_length", np.full(arm.segments, slip_part * arm.total_length))
             ended, more = self._find(q, inputs, MAX_ITERATIONS)
             iterations += more
@@ -174,6 +219,38 @@ class StaticSolver:
                 ended, more = self._find(q, inputs, MAX_ITERATIONS - iterations)
                 iterations += more
         return replace(self.examine(q, inputs, ended, iterations), left=tuple(left))
+
+    def _stick(self, start: np.ndarray, inputs: np.ndarray, *, exactly: bool) -> Equilibrium:
+        """The equilibrium of cables that rub, from where they were: they stick, or slip from there.
+
+        An exact search takes a few times as long for an iteration, and finds what friction couples strongly.
+        """
+        arm, passes, q = self.scene.arm, self.kernel.passes, start.copy()
+        self._set("slip_length", np.full(arm.segments, SLIP_PART * arm.total_length))
+        numbers = (inputs, self.segments, self.disks, arm.rest_length)
+        ended, iterations = sticking.find_sticking(passes, q, *numbers, self.rubbing, exactly, MOST_STICKING)
+        if ended == search.BALANCED and not exactly:
+            ended, more = self._find(q, inputs, MAX_ITERATIONS)
+            iterations += more
+        return self.examine(q, inputs, ended, iterations)
+
+    def _stick_step_by_step(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
+        """The equilibrium as of ``_stick``, by way of others between the inputs before and these.
+
+        All of them remember the one before, so that where the steps are does not matter.
+        """
+        part, step, iterations = 0.0, 0.5, 0
+        while step >= SHORTEST_STEP:
+            trial = min(part + step, 1.0)
+            point = self._stick(start, before.inputs + trial * (inputs - before.inputs), exactly=True)
+            iterations += point.iterations
+            if not point.found:
+                step *= 0.5
+            elif trial == 1.0:
+                return replace(point, iterations=iterations)
+            else:
+                part, start = trial, point.coordinates
+        return self.examine(start, inputs, search.NOT_FOUND, iterations)
 
     def _find(self, q: np.ndarray, inputs: np.ndarray, most: int) -> tuple[int, int]:
         """Move q to an equilibrium; returns how the search ended, and its iterations."""
@@ -212,10 +289,10 @@ class StaticSolver:
             residual=residual,
         )
 
-    def _remember(self, before: "Equilibrium | Slip") -> tuple[float, ...]:
-        """Put where the cables slip from into the table; returns the slip lengths to search with in turn."""
-        if not any(kind.rubs for kind in self.scene.cable_kinds):
-            return (0.0,)
+    def _remember(self, before: "Equilibrium | Slip") -> None:
+        """Put where the cables slip from into the table."""
+        if not self.rubbing.size:
+            return
         arm = self.scene.arm
         if isinstance(before, Slip):
             lengths = [np.full(arm.disks, before * FAR * arm.total_length) for _ in arm.cables]
@@ -224,7 +301,6 @@ class StaticSolver:
             lengths = [np.pad(np.cumsum(way[::-1])[::-1], (0, arm.disks - way.size)) for way in ways]
         for number, beyond in enumerate(lengths, start=1):
             self._set(f"length_before_{number}", np.repeat(beyond, arm.subsegments))
-        return SLIP_PARTS
 
     def _set(self, name: str, values: np.ndarray) -> None:
         """Fill the columns of a quantity, numbered or not, where the kernel has them."""
@@ -232,15 +308,23 @@ class StaticSolver:
             if known == name or known.rpartition("_")[0] == name:
                 self.segments[:, column] = values
 
-    def branches(self, inputs: np.ndarray, near: Equilibrium) -> list[Equilibrium]:
-        """Equilibria between which cables that rub may leave the arm, searched from one; else that one."""
-        if not any(kind.rubs for kind in self.scene.cable_kinds):
-            return [near]
-        return [self.solve(inputs, near.coordinates, slip) for slip in Slip]
+    def rests(self, near: Equilibrium) -> list[Equilibrium]:
+        """Where the arm may rest under an equilibrium's inputs, if that one is found: there.
+
+        Cables that rub may leave it anywhere on the way between the branch of cables drawn in and that of
+        cables let out, if there are both; the equilibrium lies on it.
+        """
+        if not self.rubbing.size or not near.found:
+            return [near] if near.found else []
+        drawn_in, let_out = (self.solve(near.inputs, near.coordinates, slip) for slip in Slip)
+        return [point for point in (drawn_in, near, let_out) if point.found]
 
     def warm_up(self) -> None:
         """Compile the kernel, or load it compiled, so that what follows is solving alone."""
-        self.solve(np.zeros(len(self.scene.inputs)))
+        inputs = np.zeros(len(self.scene.inputs))
+        rest = self.solve(inputs)
+        if self.rubbing.size:
+            self.solve(inputs, rest.coordinates, rest)
 
 
 def shape_of(arm: Arm, bend_angle: np.ndarray, elongation: np.ndarray | None) -> dict[str, Any]:

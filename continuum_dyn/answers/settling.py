@@ -35,7 +35,8 @@ class Settling:
     """Settling of the tip after the last change of the inputs.
 
     ``along`` is the tip's position (m) at each ``time`` (s), along the straight line from its position when
-    this change began (0) to its last equilibrium (``travel``); motion across that line is left out.
+    this change began (0) to where it rests (``travel``); motion across that line is left out.
+    ``cables_stick`` says that cables rub: in the motion linearized about rest, so in ``mode``, they stick.
     ``figures`` are in SI units, by glossary name; for those that are None ``missing`` has the reason.
     """
 
@@ -45,6 +46,7 @@ class Settling:
     change: LastChange
     ring_down: RingDown | None
     mode: Mode | None
+    cables_stick: bool
     figures: dict[str, float | None]
     missing: dict[str, str]
 
@@ -76,7 +78,8 @@ def settling(log: Log) -> Settling:
         "static_gap": _number(log.attributes.get("static_gap")),
     }
     reasons = {name: _reason(name, missing) for name, value in figures.items() if value is None}
-    return Settling(time, along, travel, change, ring_down, mode, figures, reasons)
+    stick = any(kind.rubs for kind in scenario.scene.cable_kinds)
+    return Settling(time, along, travel, change, ring_down, mode, stick, figures, reasons)
 
 
 def _motion_times(log: Log) -> np.ndarray:
@@ -89,14 +92,21 @@ def _motion_times(log: Log) -> np.ndarray:
 
 def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
     """Position of the tip along its travel at all samples, and the travel, m."""
-    motion, rests = log.trajectory, log.equilibria
+    motion = log.trajectory
     tip = np.column_stack([motion["disk_x"][:, -1], motion["disk_y"][:, -1]])
     start = CubicSpline(motion["time"], tip)(begin)
-    line = np.array([rests["disk_x"][-1, -1], rests["disk_y"][-1, -1]]) - start
+    line = _place_of_rest(log) - start
     travel = float(np.hypot(*line))
     if travel < NO_TRAVEL * log.arm["disks"] * log.arm["disk_spacing"]:
         raise InputError(f"{log.path}: the tip is where it will rest from the start; it does not travel.")
     return (tip - start) @ line / travel, travel
+
+
+def _place_of_rest(log: Log) -> np.ndarray:
+    """Where the run says that the tip rests, x and y, m: with friction, beside its last equilibrium."""
+    if "rest_x" in log.attributes:
+        return np.array([log.attributes["rest_x"], log.attributes["rest_y"]])
+    return np.array([log.equilibria[name][-1, -1] for name in ("disk_x", "disk_y")])
 
 
 def _try(missing: dict[str, str], name: str, compute: Callable[[], Any]) -> Any:

@@ -234,7 +234,8 @@ def _show(report: dict[str, Any]) -> None:
     if result.tip is not None:
         table.add_row("tip", _pose(result.tip))
     if result.static_gap is not None:
-        table.add_row("gap to static", f"{length(result.static_gap)} from the final equilibrium")
+        rest = "where friction may leave it" if len(result.rests) > 1 else "the final equilibrium"
+        table.add_row("gap to static", f"{length(result.static_gap)} from {rest}")
     if result.trajectory is not None:
         _add_motion(table, result)
     if result.tip_error is not None:

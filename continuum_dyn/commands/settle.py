@@ -36,7 +36,7 @@ def settle(
 ) -> None:
     """Show how the motion of a log settles.
 
-    After the last change of what drives the arm, along the straight way of its tip to its last equilibrium:
+    After the last change of what drives the arm, along the straight way of its tip to where it rests:
     rise time, overshoot, settling times; frequency and damping ratio of the ring-down, beside those of the
     linear mode at that equilibrium; and the gap that is left. Writes DIR/NAME_settle.png. Exit status:
     1 if an assertion does not hold.
@@ -53,7 +53,9 @@ def settle(
     save(settling_plot.settling(read.title, found), picture)
     verdicts = judge(asked, found.figures)
     if as_json:
-        record = {"log": str(log), "title": read.title, **found.figures, "missing": found.missing}
+        record: dict[str, Any] = {"log": str(log), "title": read.title, **found.figures}
+        record |= {"mode_of_cables_that_stick": found.cables_stick and found.mode is not None}
+        record |= {"missing": found.missing}
         asserted = [verdict.record for verdict in verdicts]
         typer.echo(json.dumps(record | {"assertions": asserted, "picture": str(picture)}))
     else:
@@ -70,6 +72,8 @@ def _show(title: str, found: "Settling", verdicts: list[Verdict]) -> None:
     console.print(escape(title))
     console.print(_step_table(found))
     console.print(_ring_down_table(found))
+    if found.cables_stick and found.mode is not None:
+        console.print("The linear mode is that of cables that stick: small motions do not make them slip.")
     for why in dict.fromkeys(found.missing[name] for name in found.missing):
         names = [name.replace("_", " ") for name, reason in found.missing.items() if reason == why]
         console.print(f"no {', '.join(names)}: {why}.")

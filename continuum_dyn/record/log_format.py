@@ -111,6 +111,8 @@ OPTIONAL_ATTRIBUTES: dict[str, type] = {
     "atol": float,
     "step": float,
     "static_gap": float,
+    "rest_x": float,
+    "rest_y": float,
     "tip_error": float,
     "bending_strain": float,
     "warnings": str,

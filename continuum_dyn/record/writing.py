@@ -60,6 +60,8 @@ def attributes_of(run: "Run", complete: bool = True) -> dict[str, Any]:
     for name in ("tip_error", "static_gap", "bending_strain"):
         if getattr(run, name) is not None:
             attributes[name] = getattr(run, name)
+    if run.rest is not None and len(run.rests) > 1:
+        attributes |= {"rest_x": run.rest[0], "rest_y": run.rest[1]}
     if run.mesh is not None:
         attributes |= {"mesh_error": run.mesh.estimate, "mesh_extrapolated": run.mesh.extrapolated}
     return attributes

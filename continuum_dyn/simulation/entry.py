@@ -102,7 +102,8 @@ def _extrapolate_run(coarse: Run, fine: Run) -> Run:
         return run
     error = (4.0 * (fine.tip_error or 0.0) + (coarse.tip_error or 0.0)) / 3.0
     trajectory = extrapolate(coarse.trajectory, fine.trajectory)
-    return replace(run, tip_error=error).with_trajectory(trajectory, run.equilibria[-1:])
+    rests = list(map(extrapolate, coarse.rests, fine.rests))
+    return replace(run, tip_error=error).with_trajectory(trajectory, rests)
 
 
 def _coarse_message(mesh: Mesh, tip: float, seconds: float) -> str:

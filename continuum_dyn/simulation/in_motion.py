@@ -92,8 +92,7 @@ def _integrate_and_check(
     )
     if monitor.outcome:
         return run
-    branches = motion.statics.branches(motion.last_inputs, ends[-1])
-    return run.with_trajectory(trajectory, branches, growths[-1])
+    return run.with_trajectory(trajectory, motion.statics.rests(ends[-1]), growths[-1])
 
 
 class _Moved(NamedTuple):
@@ -162,10 +161,8 @@ def _find_end(motion: Motion, trajectory: Trajectory) -> tuple[Equilibrium, str]
 
 
 def _rests_at(end: Equilibrium, motion: Motion, trajectory: Trajectory) -> bool:
-    """Whether the tip has reached that equilibrium, or the lines between its branches."""
-    if not end.found:
-        return False
-    rests = [branch.tip for branch in motion.statics.branches(motion.last_inputs, end) if branch.found]
+    """Whether the tip has reached that equilibrium, or where else friction may leave it."""
+    rests = [rest.tip for rest in motion.statics.rests(end)]
     return bool(rests) and tip_gap(trajectory.tip, rests) < motion.scenario.settled_within
 
 

@@ -10,7 +10,13 @@ from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.mesh import Mesh
 from continuum_dyn.simulation.messages import failure_message
-from continuum_dyn.simulation.rest_gap import has_settled, tip_gap, unsettled_message
+from continuum_dyn.simulation.rest_gap import (
+    Place,
+    has_settled,
+    place_of_rest,
+    tip_gap,
+    unsettled_message,
+)
 from continuum_dyn.simulation.trajectory import Trajectory
 from continuum_dyn.stability import Growth
 from continuum_dyn.warnings.collected import warnings_of
@@ -24,10 +30,11 @@ class Run:
     """The answer to a scenario.
 
     ``equilibria`` are those of the study; for a motion the first and the last one, and if requested those of
-    every sample in ``static_path``. ``static_gap`` is the distance (m) of the tip from its final
-    equilibrium. ``tip_error`` (m) is the estimate of the largest tip error if an accuracy was requested;
-    ``mesh`` is the mesh that was found, with its part of the error, if the program chose that, too.
-    ``solve_time`` (s) is the solving alone, with kernels loaded.
+    every sample in ``static_path``. ``rests`` is where a motion may end, ``StaticSolver.rests`` of its last
+    equilibrium; ``rest`` is the place there that is next to the tip, x and y, m, and ``static_gap`` the
+    distance to it, m. ``tip_error`` (m) is the estimate of the largest tip error if an accuracy was
+    requested; ``mesh`` is the mesh that was found, with its part of the error, if the program chose that,
+    too. ``solve_time`` (s) is the solving alone, with kernels loaded.
     """
 
     scenario: Scenario
@@ -36,6 +43,8 @@ class Run:
     equilibria: list[Equilibrium] = field(default_factory=list)
     static_path: list[Equilibrium] = field(default_factory=list)
     trajectory: Trajectory | None = None
+    rests: list[Equilibrium] = field(default_factory=list)
+    rest: Place | None = None
     static_gap: float | None = None
     solver: Solver | None = None
     tip_error: float | None = None
@@ -72,15 +81,16 @@ class Run:
         return found[-1].tip if found else None
 
     def with_trajectory(
-        self, trajectory: Trajectory, ends: list[Equilibrium], growth: Growth | None = None
+        self, trajectory: Trajectory, rests: list[Equilibrium], growth: Growth | None = None
     ) -> "Run":
-        """The run with that motion, its distance from ``ends`` and the verdict of a step response.
+        """The run with that motion, its distance from ``rests`` and the verdict of a step response.
 
-        ``ends`` are the branches of the final equilibrium; ``growth`` is what grows about the last one.
+        ``growth`` is what grows about the last equilibrium.
         """
-        end, rests = ends[-1], [point.tip for point in ends if point.found]
-        gap = tip_gap(trajectory.tip, rests) if rests else None
-        run = replace(self, trajectory=trajectory, static_gap=gap)
+        end, tips = self.equilibria[-1], [point.tip for point in rests if point.found]
+        rest = place_of_rest(trajectory.tip, tips) if tips else None
+        gap = tip_gap(trajectory.tip, tips) if tips else None
+        run = replace(self, trajectory=trajectory, rests=rests, rest=rest, static_gap=gap)
         if not self.scenario.study.settles:
             return run
         if gap is None or end.outcome is not Outcome.COMPLETED:
@@ -88,8 +98,8 @@ class Run:
         speeds, within = trajectory.tip_speed, self.scenario.settled_within
         if has_settled(gap, float(speeds[-1]), within):
             return replace(run, outcome=Outcome.SETTLED)
-        tips = zip(trajectory.disk_x[:, -1], trajectory.disk_y[:, -1], strict=True)
-        gaps = np.array([tip_gap((x, y, 0.0), rests) for x, y in tips])
+        way = zip(trajectory.disk_x[:, -1], trajectory.disk_y[:, -1], strict=True)
+        gaps = np.array([tip_gap((x, y, 0.0), tips) for x, y in way])
         message = unsettled_message(trajectory.time, gaps, speeds, within)
         return replace(run, outcome=Outcome.NOT_SETTLED, message=message)
 

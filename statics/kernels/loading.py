@@ -86,7 +86,7 @@ class Kernel:
     """The passes of one structure, ready to be called by address.
 
     ``passes`` is what compiled code takes; ``signatures`` says how each is called. ``segment_columns`` and
-    ``disk_columns`` name the columns of the tables that a scene fills.
+    ``disk_columns`` name the columns of the tables that a scene fills, ``chain_columns`` those of ``chain``.
     """
 
     def __init__(
@@ -99,6 +99,7 @@ class Kernel:
         self.conservative: bool = constants["CONSERVATIVE"]
         self.segment_columns: tuple[str, ...] = constants["SEGMENT_COLUMNS"]
         self.disk_columns: tuple[str, ...] = constants["DISK_COLUMNS"]
+        self.chain_columns: tuple[str, ...] = constants["CHAIN_COLUMNS"]
         self.widths: dict[str, int] = constants["WIDTHS"]
         self.signatures = {name: PassSignature(*parts) for name, parts in constants["PASSES"].items()}
         self.addresses = compile_passes(self)

@@ -102,7 +102,7 @@ def _constants(forces: SceneForces, bodies: list[Body], columns: _Columns) -> st
         f"CONSERVATIVE = {forces.conservative}",
         f"SEGMENT_COLUMNS = {tuple(columns.segments)!r}",
         f"DISK_COLUMNS = {tuple(columns.disks)!r}",
-        f"CHAIN_COLUMNS = {len(columns.chain)}",
+        f"CHAIN_COLUMNS = {tuple(s.name for s in columns.chain)}",
         f"WIDTHS = {widths!r}",
         "PASSES = {  # name: (direction, what the caller gives, what it gets, arrays)",
         *(f"    {body.step.name!r}: {_signature(body.step)!r}," for body in bodies),

@@ -34,6 +34,7 @@ from statics.passes.search import (
     LARGEST_TURN,
     LIMIT,
     NOT_FOUND,
+    ROUNDED,
     STABLE,
     TOWARDS_LIMIT,
     UNSTABLE,
@@ -254,7 +255,7 @@ def find_stable(
         last = single
         single, turn = measure(change, unit)
         # Cables of given length may catch in a small step.
-        if single < AT_REST and not (passes.lengths != 0 and single < FALLING * last):
+        if single < AT_REST and not (passes.lengths != 0 and single > ROUNDED and single < FALLING * last):
             return settle(passes, q, negative, unit, arm, work), iteration
         slope, enough = inner(residual, change), potential
         if slope > -ROUNDING * scale:

@@ -30,6 +30,7 @@ from statics.passes.search import (
     LARGEST_TURN,
     LIMIT,
     NOT_FOUND,
+    ROUNDED,
     UNKNOWN,
     add_scaled,
     copy,
@@ -136,7 +137,7 @@ def find_balance(
         clearance = scalars[CLEARANCE]
         run(passes.residual, n, scalars, disks, chain, residual)
         last, left = left, size(residual, unit)
-        if single < AT_REST and not left < FALLING * last:
+        if single < AT_REST and not (single > ROUNDED and left < FALLING * last):
             return BALANCED, iteration
         if clearance < AT_LIMIT:
             return LIMIT, iteration

@@ -13,6 +13,8 @@ UNKNOWN = -1
 
 AT_REST = 1e-8
 """Largest last Newton step (rad, or elongation over L0): its square is below rounding."""
+ROUNDED = 1e-15
+"""Largest Newton step that is rounding even where it still falls: towards zero it may for ever."""
 FALLING = 0.9
 """Largest ratio of a residual or a step to the last one while it still falls; above, it is rounding."""
 AT_LIMIT = 1e-6
