@@ -22,9 +22,9 @@ _INVERSE_2 = f'''
 def pivot_inverse_2(a, b, c, unit, size_a, size_c, keep_sign):
     """Inverse of the pivot [[a, b], [b, c]] with its eigenvalues made positive.
 
-    The second coordinate is measured in unit, so that eigenvalues compare; the terms of a and c have the given
-    sizes. Returns the three entries of the inverse, and the number of negative eigenvalues, whose signs stay
-    with keep_sign.
+    The second coordinate is measured in unit, so that eigenvalues compare; the terms of a and c have the
+    given sizes. Returns the three entries of the inverse, and the number of negative eigenvalues, whose signs
+    stay with keep_sign.
     """
     b = b * unit
     c = c * unit * unit
