@@ -35,6 +35,7 @@ _OUTCOMES = {
     search.LIMIT: Outcome.GEOMETRY_LIMIT,
     search.NOT_FOUND: Outcome.NO_EQUILIBRIUM,
 }
+_FOUND = (search.STABLE, search.BALANCED, search.UNSTABLE)
 
 
 class Critical(IntEnum):
@@ -270,7 +271,9 @@ class StaticSolver:
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         driven = self.scene.driven_by(inputs, disk_x, disk_y, disk_theta)
         numbers = (q, pose, driven["tension"], driven["cable_displacement"], [elastic, gravity, residual])
-        if not all(np.isfinite(values).all() for values in numbers):
+        if not all(np.isfinite(values).all() for values in numbers) or (
+            ended in _FOUND and not self._is_balanced(q, inputs)
+        ):
             ended = search.NOT_FOUND
         return Equilibrium(
             outcome=_outcome(ended, negative),
@@ -288,6 +291,11 @@ class StaticSolver:
             iterations=iterations,
             residual=residual,
         )
+
+    def _is_balanced(self, q: np.ndarray, inputs: np.ndarray) -> bool:
+        """Whether the unbalanced forces are small in units of the forces that meet there."""
+        numbers = (inputs, self.segments, self.disks, self.scene.arm.rest_length)
+        return search.is_balanced(self.kernel.passes, q, *numbers)
 
     def _remember(self, before: "Equilibrium | Slip") -> None:
         """Put where the cables slip from into the table."""

@@ -38,7 +38,8 @@ class Forces:
 
     ``force`` has shape (coordinates, 1), N for a length and N m for an angle; ``mass``, ``damping`` and
     ``stiffness`` are its negative derivatives by accelerations, rates and coordinates, as Newton's method
-    takes them: damping without the inertia forces, stiffness at rest, so that all are symmetric.
+    takes them: damping without the inertia forces, stiffness at rest, so that all are symmetric. ``terms``
+    are what adds up in a force at rest, a column for each pair.
     """
 
     force: sp.Matrix
@@ -47,6 +48,7 @@ class Forces:
     stiffness: sp.Matrix
     energies: dict[str, Any] = field(default_factory=dict)
     powers: dict[str, Any] = field(default_factory=dict)
+    terms: tuple[sp.Matrix, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,11 +214,15 @@ def derive(structure: Structure, forces_at: Callable[[Groups, Any], Forces]) -> 
 def _at_rest(groups: Groups, site: Symbols) -> Forces:
     coordinates = site.coordinates
     pairs = [pair for _, group in groups for pair in group]
-    force = generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)
+
+    def force_of(pairs: list[Pair]) -> sp.Matrix:
+        return generalized_force(pairs, lambda r, i: partial_displacement(r, coordinates[i]), coordinates)
+
+    force, terms = force_of(pairs), tuple(force_of([pair]) for pair in pairs)
     none = sp.zeros(len(coordinates))
     with_potential = [group for group in groups if have_potentials([group], coordinates)]
     energies = by_account(with_potential, lambda pair: potential(pair, coordinates))
-    return Forces(force, none, none, -jacobian(force, coordinates), energies)
+    return Forces(force, none, none, -jacobian(force, coordinates), energies, terms=terms)
 
 
 def by_account(groups: Groups, amount: Callable[[Pair], Any]) -> dict[str, Any]:

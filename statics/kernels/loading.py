@@ -107,6 +107,7 @@ class Kernel:
             "inputs": len(self.inputs),
             "chain_columns": self.widths["chain"],
             "pivot_columns": self.widths.get("pivots", 0),
+            "size_columns": self.widths.get("sizes", 0),
         }
         fields: Any = family.passes
         self.passes = fields(*(self.addresses.get(name, sizes.get(name, 0)) for name in fields._fields))

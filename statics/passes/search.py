@@ -1,9 +1,12 @@
 """Common parts of both searches for an equilibrium: outcomes, limits, steps in unlike units."""
 
+import math
+
 import numpy as np
 
 from statics.kernels.calling import run
 from statics.kernels.compiled import compiled
+from statics.kernels.slots import SCALARS
 from statics.passes.rest_passes import RestPasses
 
 STABLE, UNSTABLE, LIMIT, NOT_FOUND, BALANCED = 0, 1, 2, 3, 4
@@ -21,6 +24,10 @@ AT_LIMIT = 1e-6
 """Largest clearance (over L0) at which an arm that still descends has reached its geometric limit."""
 TOWARDS_LIMIT = 0.1
 """Smallest part of the clearance that a step must leave: else a step that is too long looks like a limit."""
+UNBALANCED = 1e-8
+"""Largest residual over the size of the forces that meet in it, at an equilibrium."""
+ROUNDED = 1e-12
+"""The same over the largest such size along the arm, and over the torque of the softest segment at 1 rad."""
 LARGEST_TURN = 1.0
 """Largest turn of any disk in one step, rad."""
 
@@ -90,3 +97,44 @@ def pose_pass(
         run(passes.lengths, n, scalars, q, inputs, segments, chain)
         run(passes.beyond, n, scalars, chain)
     run(passes.pose, n, scalars, q, inputs, segments, disks, chain)
+
+
+@compiled
+def are_small(residual: np.ndarray, sizes: np.ndarray, unit: float) -> bool:
+    """Whether no unbalanced force is large in units of the forces that meet there, or not a number.
+
+    ``sizes`` are these forces, and then the segment's stiffness against bending; ``unit`` is the length that
+    makes torques of forces.
+    """
+    n, dofs = residual.shape
+    greatest, softest = 0.0, math.inf
+    for i in range(n):
+        softest = min(softest, sizes[i, dofs])
+        for k in range(dofs):
+            greatest = max(greatest, sizes[i, k] * (unit if k == 1 else 1.0))
+    for i in range(n):
+        for k in range(dofs):
+            lever = unit if k == 1 else 1.0
+            allowed = UNBALANCED * sizes[i, k] * lever + ROUNDED * (greatest + softest)
+            if not abs(residual[i, k]) * lever <= allowed:
+                return False
+    return True
+
+
+@compiled
+def is_balanced(
+    passes: RestPasses,
+    q: np.ndarray,
+    inputs: np.ndarray,
+    segments: np.ndarray,
+    disks: np.ndarray,
+    unit: float,
+) -> bool:
+    """Whether the forces balance at ``q``, shape (n, dofs), whatever led there."""
+    n, dofs = q.shape
+    chain, scalars = np.empty((n, passes.chain_columns)), np.empty(SCALARS)
+    residual, sizes = np.empty((n, dofs)), np.empty((n, passes.size_columns))
+    pose_pass(passes, q, inputs, segments, disks, chain, scalars)
+    run(passes.residual, n, scalars, disks, chain, residual)
+    run(passes.sizes, n, scalars, disks, chain, sizes)
+    return are_small(residual, sizes, unit)

@@ -6,6 +6,7 @@ from statics.derivation.step import Step
 from statics.derivation.steps import cable_steps, newton_matrix, outward
 from statics.derivation.steps.elimination import eliminate_step, substitute_step
 from statics.derivation.steps.residual import residual_step
+from statics.derivation.steps.sizes import sizes_step
 from statics.derivation.virtual_work import SceneForces, derive_statics
 from statics.structure import Structure
 
@@ -17,6 +18,7 @@ def derive_rest(structure: Structure) -> tuple[SceneForces, list[Step]]:
         *cable_steps.measuring_steps(forces),
         outward.pose_step(forces),
         residual_step(forces),
+        sizes_step(forces),
         eliminate_step(forces, newton_matrix.STATIC),
         substitute_step(forces, newton_matrix.STATIC),
         outward.observe_step(forces),

@@ -10,7 +10,8 @@ poses, that of the segment's near node and that of the disk at the span's start,
 first segment the two poses are one, and merge.
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -57,8 +58,8 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
     load = symbol_column("carried_load", len(states))
     V = trace.matrix("V", symbol_matrix("carried", *here.shape, symmetric=symmetric) + here, symmetric)
     VS, VX = trace.name("VS", V * S), trace.name("VX", V * X)
-    A = S.T * VS + weights.matrix(forces, "segment")
-    blocks = _Blocks(A, X.T * VS + pulls.T, S.T * VX + pulls, X.T * VX)
+    beyond, own = S.T * VS, weights.matrix(forces, "segment")
+    blocks = _Blocks(beyond + own, X.T * VS + pulls.T, S.T * VX + pulls, X.T * VX)
     _add_curvature(trace, blocks, weights, symbol_column("reaction", len(AXES)), reach)
     for point, to_point in core_reaches(forces):
         _add_point(trace, blocks, weights.matrix(forces, point.name), to_point)
@@ -68,10 +69,11 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
         blocks.A[:, :] += _slowing(dofs)
         given = ("slowing",)
     A, B, C, D = blocks
+    terms = [(beyond[k, k], own[k, k], A[k, k] - beyond[k, k] - own[k, k]) for k in range(dofs)]
     A, B = trace.matrix("A", A, symmetric), trace.name("B", B)
     C = B.T if symmetric else trace.name("C", C)
     b = trace.name("b", S.T * load - symbol_column("residual", dofs))
-    inverse, counted = _invert_pivot(trace, symmetric, A, weights)
+    inverse, counted = _invert_pivot(trace, symmetric, A, terms, weights)
     gain, descent = trace.name("gain", inverse * C), trace.name("descent", inverse * b)
     next_load, next_V = X.T * load - B * descent, D - B * gain
     if forces.span is not None:
@@ -95,12 +97,11 @@ def eliminate_step(forces: SceneForces, weights: Weights) -> Step:
         INWARD,
         ("segments", "disks", "chain", "residual", "descent", "pivots"),
         trace,
-        results={name: counted.pop(name) for name in ("negative_pivots",) if name in counted},
+        results=counted,
         carried={f"carried_{r}{c}": (0.0, next_V[r, c]) for r, c in entries}
         | carry_from_zero(symbol_column("carried_load", len(states)), next_load)
-        | counted
         | slopes,
-        given=given + (("keep_sign",) if counted else ()),
+        given=given + (("keep_sign",) if pivots else ()),
         stores={"descent": list(descent)} | pivots,
     )
 
@@ -154,25 +155,36 @@ def _merge_poses(V: sp.Matrix, load: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     return start * onto * V * onto.T + (1 - start) * V, start * onto * load + (1 - start) * load
 
 
-def _invert_pivot(trace: Trace, symmetric: bool, A: sp.Matrix, weights: Weights) -> tuple[sp.Matrix, Carried]:
-    """The pivot's inverse, and the numbers that the pass counts or carries for it.
+def _invert_pivot(
+    trace: Trace, symmetric: bool, A: sp.Matrix, terms: Sequence[Sequence[Any]], weights: Weights
+) -> tuple[sp.Matrix, Carried]:
+    """The pivot's inverse, and the numbers that the pass counts for it.
 
-    A pivot of a matrix that may be indefinite is made positive, unless ``keep_sign`` is given. Nothing is
-    counted of a definite matrix, nor of an unsymmetric one, where the count would mean nothing.
+    ``terms`` are those that add up in each entry of the diagonal: their sizes say whether the pivot is
+    singular. A pivot of a matrix that may be indefinite is made positive, unless ``keep_sign`` is given.
+    Nothing is counted of a definite matrix, nor of an unsymmetric one, where the count would mean nothing.
     """
     dofs = A.shape[0]
     if weights.definite or not symmetric:
         return _plain_inverse(trace, A), {}
     entries = [(r, c) for r in range(dofs) for c in range(r, dofs)]
     units = [symbol("rest_length")] if dofs == 2 else []
-    *_, size, negative = trace.call(
+    sizes = [
+        sum(sp.Abs(trace.name(f"pivot_term_{k}{number}", term)) for number, term in enumerate(parts))
+        for k, parts in enumerate(terms)
+    ]
+    *_, negative = trace.call(
         f"pivot_inverse_{dofs}",
-        [*(A[r, c] for r, c in entries), *units, symbol("pivot_scale"), symbol("keep_sign")],
-        [*(f"inverse_{r}{c}" for r, c in entries), "pivot_size", "negative"],
+        [
+            *(A[r, c] for r, c in entries),
+            *units,
+            *trace.name("pivot_size", sp.Matrix(sizes)),
+            symbol("keep_sign"),
+        ],
+        [*(f"inverse_{r}{c}" for r, c in entries), "negative"],
     )
     return symbol_matrix("inverse", dofs, dofs, symmetric=True), {
         "negative_pivots": (0.0, symbol("negative_pivots") + negative),
-        "pivot_scale": (0.0, size),
     }
 
 

@@ -23,6 +23,7 @@ from statics.derivation.reach import Reach, core_reaches, reach_of
 from statics.derivation.segment import CableSymbols, CorePointSymbols
 from statics.derivation.step import OUTWARD, Carried, Step, carry_from_zero
 from statics.derivation.steps.forces_by_name import Known, account_total, name_forces, rewrite
+from statics.derivation.steps.sizes import name_sizes
 from statics.derivation.trace import Trace, symbol, symbol_column
 from statics.derivation.virtual_work import SceneForces
 
@@ -163,6 +164,7 @@ def pose_step(forces: SceneForces) -> Step:
     carried, known = _name_poses_and_core(trace, forces)
     tensions = name_tensions(trace, forces.coupled, known, moves=False)
     name_forces(trace, forces, known)
+    drives = name_sizes(trace, forces, known)
     energies = _potential(trace, forces, known) if forces.conservative else {}
     return Step(
         "pose",
@@ -171,7 +173,7 @@ def pose_step(forces: SceneForces) -> Step:
         ("q", "inputs", "segments", "disks", "chain"),
         trace,
         results=energies | {"clearance": _clearance(trace, forces, known)},
-        carried=carried | tensions,
+        carried=carried | tensions | drives,
     )
 
 

@@ -1,39 +1,45 @@
-"""Source text, for generated kernels, of the inverse of a pivot that may be indefinite, made positive."""
+"""Source text, for generated kernels, of the inverse of a pivot that may be indefinite, made positive.
+
+A pivot counts as singular in the size of the terms that add up in it, never in that of other pivots: along an
+arm whose stiffness varies by many orders of magnitude a soft span's pivot is tiny, and right.
+"""
 
 SINGULAR, TINY = 1e-9, 1e-30
-"""Smallest size that a pivot counts as: over the torque scale, and in N m."""
+"""Smallest size that a pivot counts as: over the size of its own terms, and in N m."""
 
 _INVERSE_1 = f'''
 def pivot_inverse_1(a, size, keep_sign):
-    """Inverse of a pivot's absolute value; the torque scale so far; 1 if the pivot is negative.
+    """Inverse of a pivot's absolute value, whose terms have that size; 1 if the pivot is negative.
 
     With keep_sign the inverse has the pivot's sign.
     """
-    size = max(size, abs(a))
     inverse = 1.0 / max(abs(a), {SINGULAR!r} * size, {TINY!r})
     negative = 1.0 if a < 0.0 else 0.0
-    return inverse * (1.0 - 2.0 * negative * keep_sign), size, negative
+    return inverse * (1.0 - 2.0 * negative * keep_sign), negative
 '''
 
 _INVERSE_2 = f'''
-def pivot_inverse_2(a, b, c, unit, size, keep_sign):
+def pivot_inverse_2(a, b, c, unit, size_a, size_c, keep_sign):
     """Inverse of the pivot [[a, b], [b, c]] with its eigenvalues made positive.
 
-    The second coordinate is measured in unit, so that eigenvalues compare. Returns the three entries of the
-    inverse, the torque scale so far, and the number of negative eigenvalues, whose signs stay with keep_sign.
+    The second coordinate is measured in unit, so that eigenvalues compare; the terms of a and c have the
+    given sizes. Returns the three entries of the inverse, and the number of negative eigenvalues, whose signs
+    stay with keep_sign.
     """
     b = b * unit
     c = c * unit * unit
-    size = max(size, abs(a))
-    floor = {SINGULAR!r} * size + {TINY!r}
+    size_c = size_c * unit * unit
     determinant = a * c - b * b
-    margin = determinant - floor * (a + c) if a + c > 0.0 else -1.0
-    if margin > 0.0:
+    floor = {SINGULAR!r} * (size_a * abs(c) + size_c * abs(a)) + {TINY!r} * (abs(a) + abs(c))
+    regular = 1.0 if abs(determinant) > floor else 0.0
+    positive = (1.0 if a > 0.0 else 0.0) * (1.0 if determinant > 0.0 else 0.0)
+    if regular * max(positive, keep_sign) > 0.0:
         inverse_00 = c / determinant
         inverse_01 = -b * unit / determinant
         inverse_11 = a * unit * unit / determinant
-        negative = 0.0
+        negative = 1.0 if determinant < 0.0 else 2.0 - 2.0 * positive
     else:
+        smallest = {SINGULAR!r} * size_a + {TINY!r}
         mean = 0.5 * (a + c)
         half = 0.5 * (a - c)
         radius = math.hypot(half, b)
@@ -41,8 +47,8 @@ def pivot_inverse_2(a, b, c, unit, size, keep_sign):
         high = mean + radius
         low_is_negative = 1.0 if low < 0.0 else 0.0
         high_is_negative = 1.0 if high < 0.0 else 0.0
-        of_low = (1.0 - 2.0 * low_is_negative * keep_sign) / max(abs(low), floor)
-        of_high = (1.0 - 2.0 * high_is_negative * keep_sign) / max(abs(high), floor)
+        of_low = (1.0 - 2.0 * low_is_negative * keep_sign) / max(abs(low), smallest)
+        of_high = (1.0 - 2.0 * high_is_negative * keep_sign) / max(abs(high), smallest)
         turn = 0.5 * math.atan2(2.0 * b, a - c)
         cosine = math.cos(turn)
         sine = math.sin(turn)
@@ -50,7 +56,7 @@ def pivot_inverse_2(a, b, c, unit, size, keep_sign):
         inverse_01 = cosine * sine * (of_high - of_low) * unit
         inverse_11 = (sine * sine * of_high + cosine * cosine * of_low) * unit * unit
         negative = low_is_negative + high_is_negative
-    return inverse_00, inverse_01, inverse_11, size, negative
+    return inverse_00, inverse_01, inverse_11, negative
 '''
 
 PIVOT_SOURCES = {"pivot_inverse_1": _INVERSE_1.strip(), "pivot_inverse_2": _INVERSE_2.strip()}
