@@ -102,9 +102,8 @@ def check_finite(group: h5py.Group, name: str, values: np.ndarray) -> None:
 def _create_growing(group: h5py.Group, name: str, values: np.ndarray) -> h5py.Dataset:
     beside = values.shape[1:]
     chunk = (CHUNK, *(max(size, 1) for size in beside))
-    return group.create_dataset(
-        name, shape=(0, *beside), maxshape=(None, *beside), chunks=chunk, dtype=values.dtype
-    )
+    most = (None, *(size or None for size in beside))  # no chunk may be larger than an axis of fixed size
+    return group.create_dataset(name, shape=(0, *beside), maxshape=most, chunks=chunk, dtype=values.dtype)
 
 
 def _attach(dataset: h5py.Dataset, name: str, scales: tuple[h5py.Dataset, ...]) -> None:
