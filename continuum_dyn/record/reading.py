@@ -54,7 +54,7 @@ def open_log(path: Path) -> Iterator[h5py.File]:
     try:
         with open_unclosed(path) if is_unclosed(path) else h5py.File(path, "r", locking=False) as file:
             if has_damaged_heaps(path, file):
-                raise LogError(f"{path}: its texts are damaged. Take a copy of it, or run its scenario again.")
+                raise LogError(f"{path}: its texts are damaged. Run its scenario again.")
             yield file
     except LogError:
         raise
