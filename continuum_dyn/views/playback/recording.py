@@ -23,6 +23,7 @@ from continuum_dyn.views.playback.playback import Playback, names_of, playback_o
 from continuum_dyn.views.rerun_core.stream import Stream, content
 from statics.errors import InputError, LogError
 from statics.support.interruption import defer_interruption
+from statics.support.plain_text import plain_line
 
 APPLICATION = "continuum-dyn"
 
@@ -50,7 +51,9 @@ def record_logs(logs: Sequence[Log]) -> bytes:
     """The recording's content. Raises ``InputError`` for logs that cannot be shown together."""
     recording = Stream(core.new_recording(APPLICATION, uuid4().hex, False, False))
     memory = content(recording)  # its file sink waits for ever on a full disk (0.41)
-    core.send_recording_name(" and ".join(log.title or log.path.stem for log in logs), recording.native)
+    core.send_recording_name(
+        plain_line(" and ".join(log.title or log.path.stem for log in logs)), recording.native
+    )
     told = [
         playback_of(log, name, rank)
         for rank, (log, name) in enumerate(zip(logs, names_of(logs), strict=True))
