@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from continuum_dyn.record.log_format import PLOTTED, Column
+from continuum_dyn.record.sole_writer import temporary_name
 from statics.errors import LogError
 from statics.quantities import QUANTITIES
 from statics.support.interruption import defer_interruption
@@ -23,7 +24,7 @@ TEXT = h5py.string_dtype()
 @contextmanager
 def whole_file(path: Path) -> Iterator[h5py.File]:
     """A new file that takes its place only when it is complete. Raises ``LogError``; then none is there."""
-    new = path.with_name(path.name + ".new")
+    new = temporary_name(path)
     with defer_interruption():
         try:
             with h5py.File(new, "w", libver=VERSIONS) as file:

@@ -32,8 +32,8 @@ def test_sine_is_shown_by_more_than_three_samples_per_period(per_period: float, 
 
 
 def test_arm_at_rest_is_shown_by_any_samples() -> None:
-    rest = {"bend_angle": np.ones((5, 2)), "bend_angle_rate": np.zeros((5, 2))}
-    assert not describe_coarse_samples(motion_log(5, **rest))
+    log = motion_log(5, bend_angle=np.ones((5, 2)), bend_angle_rate=np.zeros((5, 2)))
+    assert not describe_coarse_samples(log)
 
 
 def test_run_and_plot_warn_of_too_few_samples(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
 from shutil import get_terminal_size
+from tempfile import TemporaryFile
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
@@ -61,12 +62,10 @@ def wrap(message: str) -> str:
 
 def make_folder(folder: Path) -> None:
     """Make a folder. Raises ``LogError`` if nothing can be written there."""
-    probe = folder / ".writable"
     try:
         with defer_interruption():
             folder.mkdir(parents=True, exist_ok=True)
-            probe.touch()
-            probe.unlink()
+            TemporaryFile(dir=folder).close()
     except OSError as error:
         raise LogError(
             f"cannot write to the folder {folder}: {error.strerror}. Name another with --out."

@@ -12,6 +12,7 @@ import numpy as np
 import rerun_bindings as core
 
 from continuum_dyn.record import Log
+from continuum_dyn.record.sole_writer import temporary_name
 from continuum_dyn.views.playback import heat_map, plots
 from continuum_dyn.views.playback.about import about, ending
 from continuum_dyn.views.playback.arm import moving_parts, still_parts
@@ -35,7 +36,7 @@ def save(logs: Sequence[Log], path: Path) -> None:
     be written, and then nothing is left behind; ``InputError`` for logs that cannot be shown together.
     """
     recorded = record_logs(logs)
-    part = path.with_name(path.name + ".part")
+    part = temporary_name(path)
     with defer_interruption():
         try:
             part.write_bytes(recorded)
