@@ -1,5 +1,6 @@
 """The command line: ``continuum-dyn COMMAND``. Each command is a file in ``commands/``."""
 
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -29,6 +30,7 @@ from continuum_dyn.commands import (
     validate,
 )
 from continuum_dyn.commands.terminal.extras import naming_extras
+from continuum_dyn.commands.terminal.output import drop_output, prepare_streams, say
 from continuum_dyn.commands.terminal.shared_options import (
     Quiet,
     Verbose,
@@ -36,7 +38,7 @@ from continuum_dyn.commands.terminal.shared_options import (
     with_shared_options,
 )
 from continuum_dyn.commands.terminal.show import wrap
-from statics.errors import ContinuumError
+from statics.errors import ContinuumError, LogError
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -104,7 +106,7 @@ app = typer.Typer(
 
 def _show_version(asked: bool) -> None:
     if asked:
-        typer.echo(f"continuum-dyn {version('continuum-dyn')}")
+        say(f"continuum-dyn {version('continuum-dyn')}")
         raise typer.Exit
 
 
@@ -117,10 +119,10 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
             with naming_extras():
                 command(*arguments, **options)
         except ContinuumError as error:
-            typer.echo(wrap(f"error: {error}"), err=True)
+            say(wrap(f"error: {error}"), err=True)
             raise typer.Exit(BAD_INPUT) from error
         except KeyboardInterrupt as error:
-            typer.echo("interrupted", err=True)
+            say("interrupted", err=True)
             raise typer.Exit(INTERRUPTED) from error
 
     return guarded
@@ -142,6 +144,13 @@ for _panel, _command in COMMANDS:
     app.command(cls=_Command, rich_help_panel=_panel)(with_exit_status(with_shared_options(_command)))
 
 
+def _io_message(error: OSError) -> str:
+    """Message about a file, or standard output, that could not be read or written."""
+    if error.filename is not None:
+        return f"cannot use {error.filename}: {error.strerror}."
+    return f"cannot write to standard output: {error.strerror or error}. What was logged by then is on disk."
+
+
 def main() -> None:
     """Run the command line. After Ctrl-C, whatever that comes out as, the exit status is ``INTERRUPTED``."""
     presses = []
@@ -151,8 +160,14 @@ def main() -> None:
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGINT, interrupt)
+    os.environ["MPLBACKEND"] = "agg"  # figures go to files, and matplotlib ends at a name it does not know
     try:
+        prepare_streams()
         app()
+    except (OSError, LogError) as error:
+        drop_output()
+        say(f"error: {error if isinstance(error, LogError) else _io_message(error)}", err=True)
+        sys.exit(BAD_INPUT)
     except BaseException:
         if presses:
             sys.exit(INTERRUPTED)

@@ -5,11 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import MOTION
 from scipy.optimize import brentq
 
-from continuum_dyn import load_scenario, simulate
-from continuum_dyn.scenario.profiles import Step
+from continuum_dyn import Scenario, load_scenario, simulate
+from continuum_dyn.scenario.profiles import Constant, Step
 from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.studies import MotionStudy
 from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Outcome, Scene
 from statics.arc_length import follow
 from statics.equilibria import Equilibrium, StaticSolver
@@ -125,3 +127,30 @@ def test_jump_of_the_length_puts_its_work_into_the_ledger() -> None:
     work = motion.ledger["input_work"]
     assert np.diff(work).max() > 0.5 * STIFFNESS * 4e-4**2
     assert np.abs(motion.ledger_gap).max() < 1e-3 * np.abs(work).max()
+
+
+def test_cable_of_given_length_past_points_of_the_core_acts_as_its_tension() -> None:
+    """Two segments from disk to disk: the cable joins poses that are further apart."""
+    displacement = 1e-3
+    arms = [replace(driven(cable).arm, subsegments=2) for cable in (BY_LENGTH, Cable("upper", 0.008))]
+    by_length, by_tension = (Scene(arm, (Bending(), Gravity(), Cables())) for arm in arms)
+    found = at_rest(by_length, displacement)
+    under = at_rest(by_tension, float(found.tension[0]))
+    assert found.tension[0] > 0.5  # N
+    np.testing.assert_allclose(found.coordinates, under.coordinates, rtol=1e-9, atol=1e-13)
+    assert under.cable_displacement[0] + found.tension[0] / STIFFNESS == pytest.approx(
+        displacement, abs=1e-12
+    )
+
+
+def test_arm_held_by_four_cables_of_given_length_stays_at_rest() -> None:
+    """Three of them are slack: so much are they let out."""
+    offsets, lengths = (0.008, 0.004, 0.0, -0.004), (1e-3, -1e-3, -1e-3, -1e-3)
+    cables = tuple(Cable(f"c{r}", r, cable_stiffness=1e4) for r in offsets)
+    scene = Scene(driven(*cables).arm, (Bending(), Gravity(), Cables(), *MOTION))
+    scenario = Scenario(scene, tuple(map(Constant, lengths)), MotionStudy(0.1, samples=11))
+    run = simulate(scenario)
+    assert run.outcome is Outcome.COMPLETED
+    assert run.trajectory is not None
+    assert np.ptp(run.trajectory.disk_y[:, -1]) < 1e-12
+    assert (run.trajectory.tension[-1] > 0.0).tolist() == [True, False, False, False]

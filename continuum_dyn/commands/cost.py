@@ -6,9 +6,8 @@ from math import log2
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
+from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.show import length, make_folder, plain_table, with_status
 from statics.support.interruption import defer_interruption
 
@@ -44,7 +43,7 @@ def cost(
         write_cost(measured, stem.with_suffix(".h5"))
         plots.cost(measured).savefig(stem.with_suffix(".png"), dpi=130)
     _show(measured)
-    typer.echo(f"written: {stem}.csv, _mesh.csv, .h5, .png")
+    say(f"written: {stem}.csv, _mesh.csv, .h5, .png")
 
 
 def _write_csv(measured: "Cost", path: Path) -> None:
@@ -64,20 +63,18 @@ def _write_mesh_csv(measured: "Cost", path: Path) -> None:
 
 
 def _show(measured: "Cost") -> None:
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    console.print(_price_table(measured))
-    console.print(f"Errors against two references {length(measured.reference_gap)} apart; work in segment")
-    console.print("evaluations.\n")
+    screen = console()
+    screen.print(_price_table(measured))
+    screen.print(f"Errors against two references {length(measured.reference_gap)} apart; work in segment")
+    screen.print("evaluations.\n")
     if measured.meshes:
-        console.print(_mesh_table(measured.meshes))
-        console.print("At rest under the last tensions, against the exact rod. From two: extrapolated")
-        console.print("from this mesh and the one before.\n")
+        screen.print(_mesh_table(measured.meshes))
+        screen.print("At rest under the last tensions, against the exact rod. From two: extrapolated")
+        screen.print("from this mesh and the one before.\n")
     else:
-        console.print(f"No errors of meshes: {measured.no_meshes}\n")
-    console.print(_effect_table(measured))
-    console.print(_frontier_table(measured))
+        screen.print(f"No errors of meshes: {measured.no_meshes}\n")
+    screen.print(_effect_table(measured))
+    screen.print(_frontier_table(measured))
 
 
 def _price_table(measured: "Cost") -> Any:

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from continuum_dyn.commands.terminal.arguments import Overrides, ScenarioFile
+from continuum_dyn.commands.terminal.output import say
 from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
@@ -40,37 +41,37 @@ def explain(
 
     scenario = load_scenario(file, overrides or ())
     scene = scenario.scene
-    typer.echo(f"{scenario.title}\n")
+    say(f"{scenario.title}\n")
     per_segment = len(scene.coordinates)
-    typer.echo(
+    say(
         f"{scene.arm.segments} segments, {per_segment * scene.arm.segments} coordinates: "
         f"{' and '.join(scene.coordinates)} of each segment.\n"
     )
     if scene.arm.base is not None:
         _print_base(scene.arm)
-    typer.echo("Effects in play")
+    say("Effects in play")
     width = max((len(effect.name) for effect in scene.effects), default=0)
     for effect in scene.effects:
         line = f"  {effect.name:<{width}} on each {effect.site:<8} {effect.source}"
-        typer.echo(fill(line, 79, subsequent_indent=" " * (width + 20)))
+        say(fill(line, 79, subsequent_indent=" " * (width + 20)))
     found = _modes(scenario)
     show_additions(scenario, None if isinstance(found, InputError) else found)
     _print_method(scenario)
     if isinstance(found, InputError):
-        typer.echo("\n" + fill(f"No modes: {found}", 79))
+        say("\n" + fill(f"No modes: {found}", 79))
     else:
         show_modes(found)
     _print_equations(scene, latex)
     if measure:
         show_what_to_leave_out(scenario)
     else:
-        typer.echo("\nWhat this scenario could do without: measured if you add --measure.")
+        say("\nWhat this scenario could do without: measured if you add --measure.")
 
 
 def _print_base(arm: Any) -> None:
     x, y, angle = arm.base_pose
     where = f"at x = {x:g} m, y = {y:g} m, at an angle of {angle:g} rad"
-    typer.echo(f"The base {'moves, and starts' if arm.base_moves else 'is'} {where}.\n")
+    say(f"The base {'moves, and starts' if arm.base_moves else 'is'} {where}.\n")
 
 
 def _modes(scenario: Any) -> Any:
@@ -89,7 +90,7 @@ def _print_method(scenario: Any) -> None:
     if scenario.study.motion is None or not scenario.solver.chooses_method:
         return
     choice = Motion(scenario).choose_method()
-    typer.echo("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
+    say("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 
 def _print_equations(scene: Any, latex: bool) -> None:
@@ -100,9 +101,9 @@ def _print_equations(scene: Any, latex: bool) -> None:
     forces = derive_dynamics(structure)
     write = _latex if latex else _text
     used: set[str] = set()
-    typer.echo("\nOne segment: its far end seen from its near disk (Eq. 11)")
+    say("\nOne segment: its far end seen from its near disk (Eq. 11)")
     for name, value in zip("xy", forces.segment.displacement, strict=True):
-        typer.echo(write(name, value, used))
+        say(write(name, value, used))
     for where, places, at in (
         ("segment", ("segment",), forces.segment),
         ("span, disk to disk", ("span",), forces.span or forces.segment),
@@ -112,17 +113,17 @@ def _print_equations(scene: Any, latex: bool) -> None:
         groups = [(effect, pairs) for effect, pairs in collect(structure.forms, places, at) if pairs]
         if not groups:
             continue
-        typer.echo(f"\nOne {where}: loads P and the displacements r they work along (Eq. 1)")
+        say(f"\nOne {where}: loads P and the displacements r they work along (Eq. 1)")
         for effect, pairs in groups:
-            typer.echo(f"  {effect.name}")
+            say(f"  {effect.name}")
             for pair in pairs:
-                typer.echo(write("P", pair.load, used))
-                typer.echo(write("r", pair.displacement, used))
+                say(write("P", pair.load, used))
+                say(write("r", pair.displacement, used))
     _print_cable_laws(forces.coupled, used)
-    typer.echo("\nGeneralized forces of one segment, its own loads: Q = sum of P . dr'/du (Eq. 5)")
+    say("\nGeneralized forces of one segment, its own loads: Q = sum of P . dr'/du (Eq. 5)")
     for coordinate, value in zip(forces.segment.coordinates, forces.on_segment.force, strict=True):
-        typer.echo(write(f"Q_{_letter(coordinate.name)}", value, used))
-    typer.echo(
+        say(write(f"Q_{_letter(coordinate.name)}", value, used))
+    say(
         "\nMotion: the sum of P . dr'/du over all of these is zero for each rate u; what"
         "\nacts beyond a segment reaches it through the chain. At rest: the same"
         "\nwith dr/dq."
@@ -134,28 +135,26 @@ def _print_cable_laws(cables: Any, used: set[str]) -> None:
     """The laws of tensions that hang together over all the segments that a cable passes."""
     if not cables:
         return
-    typer.echo("\nTensions along a cable; Lambda: its length from a hole to its anchor")
+    say("\nTensions along a cable; Lambda: its length from a hole to its anchor")
     for cable in cables:
         c = cable.number
         if cable.kind.driven_by_length:
             used |= {"cable_stiffness", "cable_rest_length", "cable_displacement", "length_beyond"}
-            typer.echo(f"    tau_{c} = k_c_{c}*max(0, Lambda_{c} - Lambda_0_{c} + delta_{c}), at the base")
+            say(f"    tau_{c} = k_c_{c}*max(0, Lambda_{c} - Lambda_0_{c} + delta_{c}), at the base")
         if cable.kind.rubs:
             used |= {"friction", "slip_speed", "slip_length", "length_beyond"}
-            typer.echo(f"    tension_lost_{c} = tau_{c} - T_{c}, where at each hole that turns it by beta")
-            typer.echo(f"    T_{c} becomes T_{c}*exp(-mu_{c}*|beta|*tanh(s)), s = -Lambda_{c}'/v_s_{c}")
-            typer.echo("    at rest s = (Lambda before - Lambda)/l_s")
+            say(f"    tension_lost_{c} = tau_{c} - T_{c}, where at each hole that turns it by beta")
+            say(f"    T_{c} becomes T_{c}*exp(-mu_{c}*|beta|*tanh(s)), s = -Lambda_{c}'/v_s_{c}")
+            say("    at rest s = (Lambda before - Lambda)/l_s")
 
 
 def _print_letters(used: set[str]) -> None:
-    typer.echo("\nLetters")
+    say("\nLetters")
     for name, quantity in QUANTITIES.items():
         if name in used and quantity.letter != name:
-            typer.echo(_wrap(f"{quantity.letter:<4} {name} ({quantity.unit}): {quantity.meaning}"))
-    typer.echo(_wrap("h    phi / 2"))
-    typer.echo(
-        _wrap("sigma_n(h) = j_n(h) / h^n, spherical Bessel functions: sigma_-1 = cos h, sigma_0 = sin(h)/h")
-    )
+            say(_wrap(f"{quantity.letter:<4} {name} ({quantity.unit}): {quantity.meaning}"))
+    say(_wrap("h    phi / 2"))
+    say(_wrap("sigma_n(h) = j_n(h) / h^n, spherical Bessel functions: sigma_-1 = cos h, sigma_0 = sin(h)/h"))
 
 
 def _wrap(text: str) -> str:

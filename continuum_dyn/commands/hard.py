@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from continuum_dyn.commands.terminal.output import say
 from continuum_dyn.commands.terminal.show import duration, length, with_status
 from statics.errors import InputError, LogError
 
@@ -62,7 +63,7 @@ def hard(
     _show(verdicts)
     if out is not None:
         _write(out, verdicts)
-        typer.echo(f"written: {out}")
+        say(f"written: {out}")
     raise typer.Exit(int(any(verdict.claimed and verdict.missed for verdict in verdicts)))
 
 
@@ -120,16 +121,16 @@ def _percent(part: float) -> str:
 
 
 def _show(verdicts: "Iterable[Verdict]") -> None:
-    typer.echo(ROW.format(*COLUMNS))
+    say(ROW.format(*COLUMNS))
     for name, of_case in groupby(verdicts, key=lambda verdict: verdict.case.name):
-        typer.echo(name)
+        say(name)
         for verdict in of_case:
-            typer.echo(ROW.format(*_row(verdict)).rstrip())
-    typer.echo("\nError of the tip against a much tighter run; work in segment evaluations;")
-    typer.echo("used: the largest part of what a bound allows.")
+            say(ROW.format(*_row(verdict)).rstrip())
+    say("\nError of the tip against a much tighter run; work in segment evaluations;")
+    say("used: the largest part of what a bound allows.")
     for verdict in verdicts:
         if verdict.claimed and verdict.missed:
-            typer.echo(f"{verdict.case.name}, {verdict.method}: {'; '.join(verdict.missed)}")
+            say(f"{verdict.case.name}, {verdict.method}: {'; '.join(verdict.missed)}")
 
 
 def _markdown(verdicts: "Sequence[Verdict]") -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from continuum_dyn.commands.terminal.output import console, give_back
 from continuum_dyn.commands.terminal.show import duration, length, plain_table
 
 if TYPE_CHECKING:
@@ -24,31 +25,28 @@ def info(
 
     With --scenario the log gives back the file that it answers: info LOG --scenario > NAME.toml
     """
-    from rich.console import Console
-
     from continuum_dyn.record import read_log
 
     found = read_log(log)
     if scenario:
-        typer.echo(found.scenario, nl=False)
+        give_back(found.scenario)
         return
-    console = Console(highlight=False)
-    console.print(_overview(found))
+    screen = console()
+    screen.print(_overview(found))
     groups = {"trajectory": found.trajectory, "equilibria": found.equilibria}
     for name, columns in groups.items():
         if columns:
-            console.print(_datasets(name, columns))
+            screen.print(_datasets(name, columns))
 
 
 def _overview(log: "Log"):
-    from rich.markup import escape
     from rich.table import Table
 
-    table = Table(title=escape(log.title), title_justify="left", show_header=False, box=None, pad_edge=False)
+    table = Table(title=log.title, title_justify="left", show_header=False, box=None, pad_edge=False)
     table.add_column(style="dim", no_wrap=True)
     table.add_column(overflow="fold")
     for name, value in _facts(log):
-        table.add_row(name, escape(value))
+        table.add_row(name, value)
     return table
 
 

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from continuum_dyn.commands.terminal.output import say
 from statics.errors import InputError
 
 TEMPLATE = files("continuum_dyn.commands") / "first_scenario.toml"
@@ -29,5 +30,5 @@ def init(
         raise InputError(f"{file}: is there already, and is left as it is. Name another file.") from error
     except OSError as error:
         raise InputError(f"cannot write {file}: {error.strerror}.") from error
-    typer.echo(f"written: {file}")
-    typer.echo(f"run it:  continuum-dyn run {file}")
+    say(f"written: {file}")
+    say(f"run it:  continuum-dyn run {file}")

@@ -4,9 +4,8 @@ import csv
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
+from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.show import make_folder, mode_row, plain_table
 from statics.support.interruption import defer_interruption
 
@@ -52,7 +51,7 @@ def modes(
         _write_csv(found, stem.with_suffix(".csv"))
         plots.modes(found).savefig(stem.with_suffix(".png"), dpi=130)
     _show(found)
-    typer.echo(f"written: {stem}.csv, .png")
+    say(f"written: {stem}.csv, .png")
 
 
 def _write_csv(found: "RestModes", path: Path) -> None:
@@ -66,14 +65,12 @@ def _write_csv(found: "RestModes", path: Path) -> None:
 
 
 def _show(found: "RestModes") -> None:
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    console.print(_mode_table(found))
+    screen = console()
+    screen.print(_mode_table(found))
     if len(found.modes) > MAX_ROWS:
-        console.print(f"and {len(found.modes) - MAX_ROWS} more, up to {found.modes[-1].frequency:.5g} Hz.")
-    console.print(f"\nAbout the equilibrium that the scenario starts from{_tensions(found)}. Frequencies are")
-    console.print("those without damping; tip along x, y where the largest displacement is 1.")
+        screen.print(f"and {len(found.modes) - MAX_ROWS} more, up to {found.modes[-1].frequency:.5g} Hz.")
+    screen.print(f"\nAbout the equilibrium that the scenario starts from{_tensions(found)}. Frequencies are")
+    screen.print("those without damping; tip along x, y where the largest displacement is 1.")
 
 
 def _tensions(found: "RestModes") -> str:

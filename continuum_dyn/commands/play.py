@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from continuum_dyn.commands.terminal.output import say
 from statics.errors import InputError
 
 
@@ -37,8 +38,8 @@ def play(
     found = [read_log(path) for path in logs]
     if save is not None:
         recording.save(found, save)
-        typer.echo(f"wrote {save}")
+        say(f"wrote {save}")
     elif web:
-        viewer.serve(found, lambda address: typer.echo(f"{address}\nUntil Ctrl-C."))
+        viewer.serve(found, lambda address: say(f"{address}\nUntil Ctrl-C."))
     else:
         viewer.show(found)

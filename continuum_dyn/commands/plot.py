@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from continuum_dyn.commands.terminal.output import say
 from continuum_dyn.commands.terminal.pictures import save
 from continuum_dyn.commands.terminal.show import make_folder
 from statics.errors import InputError, did_you_mean
@@ -39,6 +40,7 @@ def plot(
     black and white.
     """
     from continuum_dyn.record import read_log
+    from continuum_dyn.record.sampling import describe_coarse_samples
     from continuum_dyn.views.figures import log_plots
 
     for part in parts or []:
@@ -51,4 +53,7 @@ def plot(
     figure = log_plots.picture(read, parts or [], at or [])
     make_folder(picture.parent)
     save(figure, picture)
-    typer.echo(f"written: {picture}")
+    coarse = describe_coarse_samples(read)
+    if coarse:
+        say(f"samples: {coarse}", err=True)
+    say(f"written: {picture}")

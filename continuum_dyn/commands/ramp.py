@@ -15,6 +15,7 @@ from continuum_dyn.commands.terminal.assertions import (
     parse,
     verdict_table,
 )
+from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.pictures import save
 from continuum_dyn.commands.terminal.show import (
     duration,
@@ -72,10 +73,10 @@ def ramp(
     if as_json:
         asserted = [verdict.record for verdict in verdicts]
         named = {"log": str(log), "title": read.title} | _record(found)
-        typer.echo(json.dumps(named | {"assertions": asserted, "picture": str(picture)}))
+        say(json.dumps(named | {"assertions": asserted, "picture": str(picture)}))
     else:
         _show(read.title, found, verdicts)
-        typer.echo(f"written: {picture}")
+        say(f"written: {picture}")
     exit_unless_held(verdicts)
 
 
@@ -87,17 +88,14 @@ def _record(found: "RampAnswers") -> dict[str, Any]:
 
 
 def _show(title: str, found: "RampAnswers", verdicts: list[Verdict]) -> None:
-    from rich.console import Console
-    from rich.markup import escape
-
-    console = Console(highlight=False)
-    console.print(escape(title))
-    console.print(_figure_table(found))
+    screen = console()
+    screen.print(title)
+    screen.print(_figure_table(found))
     if found.lags:
-        console.print(_lag_table(found))
+        screen.print(_lag_table(found))
     if verdicts:
-        console.print(verdict_table(verdicts, found.missing))
-    console.print()
+        screen.print(verdict_table(verdicts, found.missing))
+    screen.print()
 
 
 def _figure_table(found: "RampAnswers") -> Any:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.show import make_folder, plain_table
 from statics.support.interruption import defer_interruption
 
@@ -36,7 +37,7 @@ def reproduce(
         _write_shapes(found, out / f"{paper}_shapes.csv")
         plots.rone2012(found).savefig(out / f"{paper}.png", dpi=130)
     _show(found)
-    typer.echo(f"written: {out / paper}_table_2.csv, _shapes.csv, .png")
+    say(f"written: {out / paper}_table_2.csv, _shapes.csv, .png")
 
 
 def _columns_of_table_2(found: "Rone2012") -> dict[str, "np.ndarray"]:
@@ -76,32 +77,30 @@ def _write_shapes(found: "Rone2012", path: Path) -> None:
 
 
 def _show(found: "Rone2012") -> None:
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    console.print(_height_table(found))
-    console.print(
+    screen = console()
+    screen.print(_height_table(found))
+    screen.print(
         "Virtual work and finite elements: the paper's columns. Unrounded: the program with A and J of a "
         "core of 0.4 mm radius instead of Table 1's. By how many percent the program's sag is below the "
         f"paper's: {_below(found.unactuated.program)}; unrounded {_below(found.unrounded)}.\n"
     )
-    console.print(_mass_table(found))
-    console.print(
+    screen.print(_mass_table(found))
+    screen.print(
         "Core spread: the arm of the same mass, but that of its steel core along the core and not in the "
         "disks; by the program and as an exact rod.\n"
     )
-    console.print(_distance_table(found))
-    console.print(
+    screen.print(_distance_table(found))
+    screen.print(
         "Percent errors are those of the distance from the base: the paper's, what its digits give, by how "
         "much half a unit of the last digit of x moves that, and the program's against the exact rod. The "
         "paper's are below its rounding, so its digits do not give them; its first x lacks one.\n"
     )
-    console.print(_tip_table(found))
+    screen.print(_tip_table(found))
     for shapes in found.of_opposite_sign:
-        console.print(_sign_of(shapes))
+        screen.print(_sign_of(shapes))
     level = ", ".join(f"{law} {tension:.4f} N" for law, tension in found.level_tension.items())
-    console.print(f"The tip is level with the base at: {level}.\n")
-    console.print(_curvature_table(found))
+    screen.print(f"The tip is level with the base at: {level}.\n")
+    screen.print(_curvature_table(found))
 
 
 def _height_table(found: "Rone2012") -> Any:

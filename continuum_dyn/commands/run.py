@@ -13,10 +13,12 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides
 from continuum_dyn.commands.terminal.extras import MissingExtraError, naming_extras
+from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.show import length, make_folder
 from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import InputError
 from statics.support.interruption import defer_interruption
+from statics.support.plain_text import plain
 from statics.support.stages import stage
 
 if TYPE_CHECKING:
@@ -108,7 +110,7 @@ def answer(job: Job, as_json: bool) -> int:
     with defer_interruption():  # so that what was computed is logged
         report = _answer(job, quiet=as_json)
         if as_json:
-            typer.echo(json.dumps(report["record"]))
+            say(json.dumps(report["record"]))
         else:
             _show(report)
     comparison = report["comparison"]
@@ -119,6 +121,7 @@ def answer(job: Job, as_json: bool) -> int:
 def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     from continuum_dyn.record import StreamedLog, read_log
     from continuum_dyn.record.comparison import compare
+    from continuum_dyn.record.sampling import describe_coarse_samples
     from continuum_dyn.simulation import simulate
 
     started = time.perf_counter()
@@ -135,7 +138,9 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     record = _record(job.source, result, job.log, recording, wall_time)
     if comparison is not None:
         record["compared"] = asdict(comparison) | {"same": comparison.same}
-    extra = {"comparison": comparison, "source": job.source, "without_recording": without}
+    coarse = describe_coarse_samples(log)
+    record["warnings"] = [f"samples {coarse}"] if coarse else []
+    extra = {"coarse": coarse, "comparison": comparison, "source": job.source, "without_recording": without}
     return {"run": result, "log": job.log, "record": record} | extra
 
 
@@ -195,16 +200,17 @@ def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_t
 @contextmanager
 def _progress(title: str, quiet: bool) -> Iterator[Any]:
     """A progress bar on a terminal; while kernels are compiled it only pulses, and says why."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if quiet or not (console.is_terminal and shows_progress()):
+    screen = console(stderr=True)
+    if quiet or not (screen.is_terminal and shows_progress()):
         yield None
         return
-    from rich.progress import Progress
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-    latest = time.monotonic()
-    with Progress(console=console, transient=True) as bar:
+    title, latest = plain(title), time.monotonic()
+    columns = TextColumn("{task.description}", markup=False), BarColumn()
+    with Progress(
+        *columns, TaskProgressColumn(), TimeRemainingColumn(), console=screen, transient=True
+    ) as bar:
         task = bar.add_task(f"{title}: loading its kernels, or compiling new ones", total=None)
 
         def update(fraction: float) -> None:
@@ -217,9 +223,8 @@ def _progress(title: str, quiet: bool) -> Iterator[Any]:
 
 
 def _show(report: dict[str, Any]) -> None:
-    from rich.console import Console
-    from rich.markup import escape
     from rich.table import Table
+    from rich.text import Text
 
     result: Run = report["run"]
     record = report["record"]
@@ -228,9 +233,9 @@ def _show(report: dict[str, Any]) -> None:
     )
     table.add_column(style="dim", no_wrap=True)
     table.add_column(overflow="fold")
-    table.add_row("outcome", f"[bold]{result.outcome}[/bold]")
+    table.add_row("outcome", Text(str(result.outcome), style="bold"))
     if result.message:
-        table.add_row("", escape(result.message))
+        table.add_row("", result.message)
     if result.tip is not None:
         table.add_row("tip", _pose(result.tip))
     if result.static_gap is not None:
@@ -238,6 +243,8 @@ def _show(report: dict[str, Any]) -> None:
         table.add_row("gap to static", f"{length(result.static_gap)} from {rest}")
     if result.trajectory is not None:
         _add_motion(table, result)
+    if report["coarse"]:
+        table.add_row("samples", report["coarse"])
     if result.tip_error is not None:
         table.add_row("accuracy", _accuracy(result, result.tip_error))
     if result.bending_strain is not None:
@@ -249,15 +256,15 @@ def _show(report: dict[str, Any]) -> None:
         table.add_row("compared", _comparison_text(report["comparison"], report["source"]))
     table.add_row("log", str(report["log"]))
     if report["without_recording"]:
-        table.add_row("recording", f"none; {escape(report['without_recording'])}")
+        table.add_row("recording", f"none; {report['without_recording']}")
     else:
         table.add_row("play it", f"continuum-dyn play {report['log']}")
-    console = Console(highlight=False)
-    console.print(table)
+    screen = console()
+    screen.print(table)
     points = [point for point in result.equilibria if point.found]
     if result.trajectory is None and len(points) > 1:
-        console.print(_ramp_table(result, points))
-    console.print()
+        screen.print(_ramp_table(result, points))
+    screen.print()
 
 
 def _comparison_text(found: "Comparison", earlier: Path) -> str:

@@ -2,7 +2,7 @@
 
 import json
 
-import typer
+from continuum_dyn.commands.terminal.output import say
 
 
 def schema() -> None:
@@ -18,4 +18,4 @@ def schema() -> None:
     """
     from continuum_dyn.scenario_files.schema import json_schema
 
-    typer.echo(json.dumps(json_schema(), indent=2))
+    say(json.dumps(json_schema(), indent=2))

@@ -15,6 +15,7 @@ from continuum_dyn.commands.terminal.assertions import (
     parse,
     verdict_table,
 )
+from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.pictures import save
 from continuum_dyn.commands.terminal.show import duration, length, make_folder, plain_table
 
@@ -57,32 +58,29 @@ def settle(
         record |= {"mode_of_cables_that_stick": found.cables_stick and found.mode is not None}
         record |= {"missing": found.missing}
         asserted = [verdict.record for verdict in verdicts]
-        typer.echo(json.dumps(record | {"assertions": asserted, "picture": str(picture)}))
+        say(json.dumps(record | {"assertions": asserted, "picture": str(picture)}))
     else:
         _show(read.title, found, verdicts)
-        typer.echo(f"written: {picture}")
+        say(f"written: {picture}")
     exit_unless_held(verdicts)
 
 
 def _show(title: str, found: "Settling", verdicts: list[Verdict]) -> None:
-    from rich.console import Console
-    from rich.markup import escape
-
-    console = Console(highlight=False)
-    console.print(escape(title))
-    console.print(_step_table(found))
-    console.print(_ring_down_table(found))
+    screen = console()
+    screen.print(title)
+    screen.print(_step_table(found))
+    screen.print(_ring_down_table(found))
     if found.cables_stick and found.mode is not None:
-        console.print("The linear mode is that of cables that stick: small motions do not make them slip.")
+        screen.print("The linear mode is that of cables that stick: small motions do not make them slip.")
     for why in dict.fromkeys(found.missing[name] for name in found.missing):
         names = [name.replace("_", " ") for name, reason in found.missing.items() if reason == why]
-        console.print(f"no {', '.join(names)}: {why}.")
+        screen.print(f"no {', '.join(names)}: {why}.")
     if (found.figures["ring_down_misfit"] or 0.0) > CLEAR_MISFIT:
-        console.print("It does not die away as one mode does: its damping changes as it gets smaller, or")
-        console.print("several modes swing.")
+        screen.print("It does not die away as one mode does: its damping changes as it gets smaller, or")
+        screen.print("several modes swing.")
     if verdicts:
-        console.print(verdict_table(verdicts, found.missing))
-    console.print()
+        screen.print(verdict_table(verdicts, found.missing))
+    screen.print()
 
 
 def _step_table(found: "Settling") -> Any:

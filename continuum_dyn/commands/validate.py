@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from continuum_dyn.commands.terminal.output import say
+
 MAX_SHOWN = 20
 """Largest number of departures of a file that are printed."""
 
@@ -25,12 +27,12 @@ def validate(
     for log in logs:
         found = list_departures(log)
         if not found:
-            typer.echo(f"{log}: a log of format {FORMAT_VERSION}")
+            say(f"{log}: a log of format {FORMAT_VERSION}")
             continue
         wrong = True
-        typer.echo(f"{log}: {len(found)} {'departure' if len(found) == 1 else 'departures'} from the format")
+        say(f"{log}: {len(found)} {'departure' if len(found) == 1 else 'departures'} from the format")
         for line in found[:MAX_SHOWN]:
-            typer.echo(f"  {line}")
+            say(f"  {line}")
         if len(found) > MAX_SHOWN:
-            typer.echo(f"  and {len(found) - MAX_SHOWN} more")
+            say(f"  and {len(found) - MAX_SHOWN} more")
     raise typer.Exit(int(wrong))

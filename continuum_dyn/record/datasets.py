@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from continuum_dyn.record.log_format import PLOTTED, Column
+from continuum_dyn.record.sole_writer import temporary_name
 from statics.errors import LogError
 from statics.quantities import QUANTITIES
 from statics.support.interruption import defer_interruption
@@ -23,7 +24,7 @@ TEXT = h5py.string_dtype()
 @contextmanager
 def whole_file(path: Path) -> Iterator[h5py.File]:
     """A new file that takes its place only when it is complete. Raises ``LogError``; then none is there."""
-    new = path.with_name(path.name + ".new")
+    new = temporary_name(path)
     with defer_interruption():
         try:
             with h5py.File(new, "w", libver=VERSIONS) as file:
@@ -102,9 +103,8 @@ def check_finite(group: h5py.Group, name: str, values: np.ndarray) -> None:
 def _create_growing(group: h5py.Group, name: str, values: np.ndarray) -> h5py.Dataset:
     beside = values.shape[1:]
     chunk = (CHUNK, *(max(size, 1) for size in beside))
-    return group.create_dataset(
-        name, shape=(0, *beside), maxshape=(None, *beside), chunks=chunk, dtype=values.dtype
-    )
+    most = (None, *(size or None for size in beside))  # no chunk may be larger than an axis of fixed size
+    return group.create_dataset(name, shape=(0, *beside), maxshape=most, chunks=chunk, dtype=values.dtype)
 
 
 def _attach(dataset: h5py.Dataset, name: str, scales: tuple[h5py.Dataset, ...]) -> None:

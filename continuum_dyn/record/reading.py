@@ -52,9 +52,9 @@ def list_departures(path: Path) -> list[str]:
 def open_log(path: Path) -> Iterator[h5py.File]:
     """Open an HDF5 file to read, also while it is written. Raises ``LogError`` if HDF5 cannot read it."""
     try:
-        if has_damaged_heaps(path):
-            raise LogError(f"{path}: the texts in it are spoiled.")
         with open_unclosed(path) if is_unclosed(path) else h5py.File(path, "r", locking=False) as file:
+            if has_damaged_heaps(path, file):
+                raise LogError(f"{path}: its texts are damaged. Run its scenario again.")
             yield file
     except LogError:
         raise

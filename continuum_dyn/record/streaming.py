@@ -25,6 +25,7 @@ from continuum_dyn.record.datasets import (
     reason,
 )
 from continuum_dyn.record.log_format import GROUPS, UNFINISHED
+from continuum_dyn.record.sole_writer import sole_writer, temporary_name
 from continuum_dyn.record.writing import (
     attributes_of,
     columns_of,
@@ -47,7 +48,8 @@ ROOM = 200_000
 class StreamedLog:
     """The log of a run at ``path``, written as samples arrive: a ``simulation.Sink``, and a context.
 
-    Without ``finish`` the unfinished log is kept, if there is one. All methods raise ``LogError`` if a file
+    Within the context no other process writes the same log. Without ``finish`` the unfinished log is kept, if
+    there is one. All methods raise ``LogError`` if a file
     cannot be written; it names the file that is left.
     """
 
@@ -59,12 +61,15 @@ class StreamedLog:
         self._tails: dict[str, np.ndarray] = {}
 
     def __enter__(self) -> Self:
+        self._hold = sole_writer(self.path)
+        self._hold.__enter__()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self._close()
+        self._hold.__exit__(kind, error, traceback)
 
     def begin(self, run: "Run") -> None:
         """Start a motion. An earlier unfinished log stays until the first block is written."""
@@ -130,7 +135,7 @@ class StreamedLog:
     @contextmanager
     def _new(self) -> Iterator[Path]:
         """Name of a temporary file, which is removed afterwards."""
-        new = self.path.with_name(self.path.name + ".new")
+        new = temporary_name(self.path)
         try:
             yield new
         finally:

@@ -30,7 +30,7 @@ def open_unclosed(path: Path) -> h5py.File:
     """Open a copy of the file in memory. Raises ``OSError`` if HDF5 finds it damaged."""
     content = bytearray(path.read_bytes())
     if _checksum(bytes(content[:CHECKSUM])) != int.from_bytes(content[CHECKSUM:SIZE], "little"):
-        raise OSError("its superblock is spoiled")
+        raise OSError("its superblock is damaged")
     content[FLAGS] = 0
     struct.pack_into("<Q", content, END_OF_FILE, len(content))
     struct.pack_into("<I", content, CHECKSUM, _checksum(bytes(content[:CHECKSUM])))

@@ -23,6 +23,7 @@ from continuum_dyn.scenario_files.overrides import apply_overrides
 from continuum_dyn.scenario_files.tables import ScenarioFile
 from continuum_dyn.scenario_files.text import read_text
 from statics.errors import InputError
+from statics.support.plain_text import plain_line
 
 MAX_FILE_SIZE = 5_000_000
 """Largest size of a scenario file, bytes; long tables have files of their own."""
@@ -55,12 +56,12 @@ def parse(
     like ``load_scenario``.
     """
     try:
-        text = apply_overrides(text, path.name, overrides)
+        text = apply_overrides(text, plain_line(path.name), overrides)
         content = tomllib.loads(text)
         _check_sizes(content, "")
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
         _check_tolerances(content)
-        return build(file, path.stem, text, Tables(text_of_table)), file.expect
+        return build(file, plain_line(path.stem), text, Tables(text_of_table)), file.expect
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not a TOML file: {error}.") from error
     except ValidationError as error:

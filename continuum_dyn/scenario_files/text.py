@@ -10,7 +10,7 @@ MAX_FILE_SIZE = 50_000_000
 
 
 def read_text(path: Path, largest: int = MAX_FILE_SIZE) -> str:
-    """Read a text file of at most ``largest`` bytes.
+    """Read a text file in UTF-8, with a byte order mark or without, of at most ``largest`` bytes.
 
     Raises ``InputError`` that names the file and, if it is missing, its neighbours.
     """
@@ -19,7 +19,7 @@ def read_text(path: Path, largest: int = MAX_FILE_SIZE) -> str:
             content = file.read(largest + 1)
         if len(content) > largest:
             raise InputError(f"{path}: larger than {largest // 1_000_000} MB.")
-        return io.TextIOWrapper(io.BytesIO(content), encoding="utf-8").read()
+        return io.TextIOWrapper(io.BytesIO(content), encoding="utf-8-sig").read()
     except FileNotFoundError as error:
         known = [p.name for p in sorted(path.parent.glob("*.toml"))] if path.parent.is_dir() else []
         hint = did_you_mean(path.name, known) if known else ""

@@ -7,16 +7,17 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import SCENARIOS
+from conftest import MOTION, SCENARIOS
 
 from continuum_dyn import Run, Scenario, Trajectory, load_scenario, simulate
 from continuum_dyn.integrators import Budget
 from continuum_dyn.record import Log, StreamedLog, read_log, write_log
-from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.record.reading import list_departures
+from continuum_dyn.scenario.profiles import Sine, Step
 from continuum_dyn.scenario.solver import Accuracy
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import samples
-from statics import Outcome
+from statics import Arm, Bending, DiskLoad, DiskLoads, Outcome, Scene
 from statics.errors import LogError
 
 
@@ -151,3 +152,17 @@ def test_unfinished_log_opens_in_plain_h5py_as_one_that_is_written(
         simulate(scenario, sink=sink)
     with h5py.File(tmp_path / "log.h5.part", "r") as file:
         assert file["trajectory/disk_y"].shape[1] == 4
+
+
+@pytest.mark.parametrize("loads", [(), (Step(1.0, 0.0),)])
+def test_motion_without_cables_is_logged_as_one_with_cables(loads: tuple[Step, ...], tmp_path: Path) -> None:
+    """Its datasets have an axis of no cables, which no chunk may be larger than."""
+    effects = (Bending(), DiskLoads((DiskLoad(4, (0.0, 0.02), driven=bool(loads)),)), *MOTION)
+    scene = Scene(Arm.preset("rone2012"), effects)
+    scenario = Scenario(scene, (), MotionStudy(0.5, samples=1501), load_factors=loads)
+    run, seen = streamed(scenario, tmp_path / "log.h5")
+    write_log(run, tmp_path / "whole.h5")
+    assert seen
+    assert seen[-1].trajectory["tension"].shape == (seen[-1].trajectory["time"].size, 0)
+    assert_same(read_log(tmp_path / "log.h5"), read_log(tmp_path / "whole.h5"))
+    assert list_departures(tmp_path / "log.h5") == []

@@ -225,5 +225,19 @@ def test_table_of_too_many_periods_is_refused(tmp_path: Path) -> None:
     assert "table 'table.csv': 600000 periods of 2 rows. Allowed: 1000000 rows." in message
 
 
+def test_files_with_a_byte_order_mark_are_read_as_without(tmp_path: Path) -> None:
+    """As Notepad writes them, and Excel its "CSV UTF-8"."""
+    text = GOOD.replace('"step", before = 0.0, after = 1.0', '"table", file = "table.csv"')
+    rows = "time,tension\n0,1\n1,2\n"
+    found = []
+    for encoding, newline in (("utf-8", "\n"), ("utf-8-sig", "\r\n")):
+        (tmp_path / "table.csv").write_text(rows, encoding=encoding, newline=newline)
+        (tmp_path / "scenario.toml").write_text(text, encoding=encoding, newline=newline)
+        found.append(load_scenario(tmp_path / "scenario.toml"))
+    assert found[0].text == found[1].text == text
+    assert found[0].tables == found[1].tables == {"table.csv": rows}
+    assert found[0].drives == found[1].drives
+
+
 def test_solver_table_knows_every_integrator() -> None:
     assert {"auto", *METHODS} == set(Method.__args__)

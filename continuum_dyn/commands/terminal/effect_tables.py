@@ -4,8 +4,7 @@ from math import inf
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-import typer
-
+from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.show import duration, length, mode_row, plain_table, with_status
 
 if TYPE_CHECKING:
@@ -19,8 +18,6 @@ LOWEST = 3
 
 def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
     """Print the operations that each effect adds to a segment, and its rates about rest."""
-    from rich.console import Console
-
     from continuum_dyn.equations.operations import added_by_each, operations
 
     scene = scenario.scene
@@ -34,9 +31,9 @@ def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
         shown.add_row(f"  {effect.name}", ", ".join(effect.coordinates), operated, *rates)
     rates = [] if found is None else [_range(found.rates)]
     shown.add_row("  all of them", str(len(scene.coordinates)), str(operations(scene)), *rates)
-    typer.echo()
-    Console(highlight=False).print(shown)
-    typer.echo("  Operations: arithmetic that the steps of one evaluation would lose with it.")
+    say()
+    console().print(shown)
+    say("  Operations: arithmetic that the steps of one evaluation would lose with it.")
 
 
 def _rates(scenario: "Scenario", effect: str) -> str:
@@ -56,22 +53,18 @@ def _range(rates: tuple[float, float]) -> str:
 
 def show_modes(found: "RestModes") -> None:
     """The lowest modes of the arm at rest."""
-    from rich.console import Console
-
     shown = plain_table("", "Modes at rest", "frequency", "damping ratio", "falls to 1/e in")
     for number, mode in enumerate(found.modes[:LOWEST], start=1):
         shown.add_row(f"  {number}", *mode_row(mode))
-    typer.echo()
-    Console(highlight=False).print(shown)
+    say()
+    console().print(shown)
     others = len(found.modes) - LOWEST
     more = f"and {others} more, up to {found.modes[-1].frequency:.5g} Hz; " if others > 0 else ""
-    typer.echo(f"  {more}shapes: continuum-dyn modes FILE")
+    say(f"  {more}shapes: continuum-dyn modes FILE")
 
 
 def show_what_to_leave_out(scenario: "Scenario") -> None:
     """Effects that move the tip by less than is asked for, measured by leaving each out in turn."""
-    from rich.console import Console
-
     from continuum_dyn.experiments.cost import effects, prepare_motion
 
     allowed, said = _allowed(scenario)
@@ -80,11 +73,11 @@ def show_what_to_leave_out(scenario: "Scenario") -> None:
     shown = plain_table("", "Left out", *columns)
     for effect in sorted(measured, key=lambda e: inf if e.tip_shift is None else e.tip_shift):
         shown.add_row(f"  {effect.name}", *_row(effect, allowed))
-    typer.echo()
-    Console(highlight=False).print(shown)
+    say()
+    console().print(shown)
     useless = [e.name for e in measured if e.tip_shift is not None and e.tip_shift < allowed]
     advice = f"Can be left out: {', '.join(useless)}" if useless else "Nothing can be left out"
-    typer.echo("\n" + fill(f"{advice}. Allowed: {length(allowed)}, {said}. Each was left out alone.", 79))
+    say("\n" + fill(f"{advice}. Allowed: {length(allowed)}, {said}. Each was left out alone.", 79))
 
 
 def _row(effect: "LeftOut", allowed: float) -> tuple[str, ...]:

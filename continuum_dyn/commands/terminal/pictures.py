@@ -1,5 +1,6 @@
 """Writes figures to files."""
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,8 @@ DOTS_PER_INCH = 200
 def save(figure: "Figure", path: Path) -> None:
     """Write a figure; the suffix says as what. Raises ``LogError`` if it cannot be written."""
     try:
-        with defer_interruption():
+        with defer_interruption(), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Glyph .* missing from")  # it is drawn as a box
             figure.savefig(path, dpi=DOTS_PER_INCH)
     except OSError as error:
         raise LogError(f"cannot write {path}: {error.strerror or error}.") from error

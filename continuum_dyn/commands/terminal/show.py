@@ -5,12 +5,15 @@ from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
 from shutil import get_terminal_size
+from tempfile import TemporaryFile
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
+from continuum_dyn.commands.terminal.output import console
 from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import LogError
 from statics.support.interruption import defer_interruption
+from statics.support.plain_text import plain
 
 if TYPE_CHECKING:
     from continuum_dyn.modes import Mode
@@ -59,12 +62,10 @@ def wrap(message: str) -> str:
 
 def make_folder(folder: Path) -> None:
     """Make a folder. Raises ``LogError`` if nothing can be written there."""
-    probe = folder / ".writable"
     try:
         with defer_interruption():
             folder.mkdir(parents=True, exist_ok=True)
-            probe.touch()
-            probe.unlink()
+            TemporaryFile(dir=folder).close()
     except OSError as error:
         raise LogError(
             f"cannot write to the folder {folder}: {error.strerror}. Name another with --out."
@@ -83,10 +84,11 @@ def plain_table(title: str, *columns: str) -> Any:
 
 def with_status(title: str, work: Callable[[Callable[[str], None]], Any]) -> Any:
     """Run ``work``, whose argument shows progress on a terminal, and return its result."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not (console.is_terminal and shows_progress()):
+    screen = console(stderr=True)
+    if not (screen.is_terminal and shows_progress()):
         return work(lambda _: None)
-    with console.status(title) as status:
-        return work(lambda what: status.update(f"{title}: {what}"))
+    from rich.text import Text  # of a plain string rich would take the markup
+
+    title = plain(title)
+    with screen.status(Text(title)) as status:
+        return work(lambda what: status.update(Text(f"{title}: {plain(what)}")))

@@ -6,15 +6,14 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, redirect_stdout
 from pathlib import Path
 
-import typer
-
+from continuum_dyn.commands.terminal.output import say
 from statics.kernels.kept_files import kernel_folder
 from statics.support.stages import LOG
 
 
 class _OnStandardError(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
-        typer.echo(f"  {record.getMessage()}", err=True)
+        say(f"  {record.getMessage()}", err=True)
 
 
 def shows_progress() -> bool:

@@ -8,8 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from continuum_dyn.record import Log
+from continuum_dyn.record.sampling import describe_coarse_samples
 from continuum_dyn.views.figures.axis_units import Axis, axis
 from continuum_dyn.views.figures.backbone import backbone
+from continuum_dyn.views.figures.heading import add_note, set_heading
 from statics.errors import InputError
 
 ARC_POINTS = 12
@@ -69,7 +71,10 @@ def picture(log: Log, parts: Sequence[str] = (), at: Sequence[float] = ()) -> Fi
     axes: dict[str, Any] = figure.subplot_mosaic(_places(shown, series))
     for part in shown:
         PARTS[part](axes[part], log, series, at)
-    figure.suptitle(log.title)
+    set_heading(figure, log.title)
+    coarse = describe_coarse_samples(log)
+    if coarse and not series.rest:
+        add_note(figure, f"Samples {coarse}")
     return figure
 
 

@@ -11,6 +11,7 @@ from continuum_dyn.experiments.cost import Cost
 from continuum_dyn.experiments.reproduce import Rone2012, Shapes
 from continuum_dyn.modes import Mode, RestModes
 from continuum_dyn.views.figures.backbone import backbone
+from continuum_dyn.views.figures.heading import set_heading
 from statics.equilibria import shape_of
 from statics.quantities import QUANTITIES
 
@@ -61,7 +62,7 @@ def cost(measured: Cost) -> Figure:
     _draw_meshes(by_mesh, measured)
     for axes in (by_time, by_work, by_mesh):
         axes.grid(visible=True, which="major", lw=0.4, color="0.8")
-    figure.suptitle(f"{measured.scenario.title}: what accuracy costs")
+    set_heading(figure, f"{measured.scenario.title}: what accuracy costs")
     return figure
 
 
@@ -85,7 +86,7 @@ def modes(found: RestModes) -> Figure:
         axes.set_ylabel("y (mm)")
     box = grid[0, 0].dataLim
     figure.set_size_inches(3.8 * columns, rows * (0.8 + 3.4 * box.height / max(box.width, box.height)) + 0.4)
-    figure.suptitle(f"{found.scenario.title}: modes at rest")
+    set_heading(figure, f"{found.scenario.title}: modes at rest")
     return figure
 
 
@@ -161,7 +162,7 @@ def rone2012(found: Rone2012) -> Figure:
     _draw_laws(axes["low"], low, 1e6)
     axes["low"].set(xlabel="x (mm)", ylabel="y (um)", title="Shapes of Fig. 3 and 4 (y stretched)")
     _draw_tip_heights(axes["tip"], found)
-    figure.suptitle("Rone and Ben-Tzvi 2012: the equations as printed, the program's, and the exact rod")
+    set_heading(figure, "Rone and Ben-Tzvi 2012: the equations as printed, the program's, and the exact rod")
     return figure
 
 

@@ -9,6 +9,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from continuum_dyn.answers.loops import on_both_branches
 from continuum_dyn.answers.ramp import RampAnswers, TipPath
 from continuum_dyn.views.figures.axis_units import Axis, axis
+from continuum_dyn.views.figures.heading import set_heading
 from statics.quantities import QUANTITIES
 
 MARKS = 12
@@ -25,7 +26,7 @@ def ramp(title: str, found: RampAnswers) -> Figure:
     if moves:
         _draw_lag(grid[1, 0], found)
         _draw_rates(grid[1, 1], found)
-    figure.suptitle(title)
+    set_heading(figure, title)
     return figure
 
 

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from continuum_dyn.answers.settling import BANDS, Settling
 from continuum_dyn.views.figures.axis_units import Axis, axis
+from continuum_dyn.views.figures.heading import set_heading
 
 SHADES = ("0.90", "0.80", "0.68")
 """Greys of the bands, widest first."""
@@ -28,7 +29,7 @@ def settling(title: str, found: Settling) -> Figure:
     place = axis("travel", found.along, "tip along its travel")
     _draw_tip(above, found, clock, place)
     _draw_distance(below, found, clock, place)
-    figure.suptitle(title)
+    set_heading(figure, title)
     return figure
 
 

@@ -1,10 +1,14 @@
 """The text beside a playback: the run's results, how to read the drawing, and its scenario."""
 
+import re
+from string import punctuation
+
 import numpy as np
 
 from continuum_dyn.record import Log
 from continuum_dyn.views.playback.loads import acting_loads
 from continuum_dyn.views.playback.playback import Playback
+from statics.support.plain_text import plain_line
 
 ATTRIBUTES = {
     "static_gap": ("gap to the static equilibrium", "m"),
@@ -25,14 +29,25 @@ def ending(log: Log) -> str:
 def about(playback: Playback) -> str:
     """The text in Markdown."""
     parts = [
-        f"# {playback.name or playback.log.title}",
-        ending(playback.log),
+        f"# {_escape(playback.name or playback.log.title)}",
+        _escape(ending(playback.log)),
         _results(playback),
         _reading(playback),
     ]
     if playback.log.scenario:
-        parts.append(f"## Scenario\n\n```toml\n{playback.log.scenario.strip()}\n```")
+        fence = _fence(playback.log.scenario)
+        parts.append(f"## Scenario\n\n{fence}toml\n{playback.log.scenario.strip()}\n{fence}")
     return "\n\n".join(parts) + "\n"
+
+
+def _escape(text: str) -> str:
+    """The text in a line of Markdown that shows it as it is."""
+    return re.sub(f"([{re.escape(punctuation)}])", r"\\\1", plain_line(text))
+
+
+def _fence(text: str) -> str:
+    """A fence longer than any in the text."""
+    return "`" * max(3, 1 + max(map(len, re.findall("`+", text)), default=0))
 
 
 def _results(playback: Playback) -> str:
@@ -43,7 +58,7 @@ def _results(playback: Playback) -> str:
     for name, (words, unit) in ATTRIBUTES.items():
         if name in playback.log.attributes:
             value = playback.log.attributes[name]
-            rows[words] = f"{value:.3g} {unit}".strip() if isinstance(value, float) else str(value)
+            rows[words] = f"{value:.3g} {unit}".strip() if isinstance(value, float) else _escape(str(value))
     if "input_work" in columns:
         rows["power ledger"] = f"closes to {_ledger_gap(playback):.2g} J"
     table = "\n".join(f"| {name} | {value} |" for name, value in rows.items())

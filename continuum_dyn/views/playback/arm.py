@@ -20,6 +20,7 @@ from continuum_dyn.views.playback.loads import ActingLoad, acting_loads
 from continuum_dyn.views.playback.measures import Measures
 from continuum_dyn.views.playback.playback import Playback, spread
 from continuum_dyn.views.playback.targets import resting_rows
+from statics.support.plain_text import plain_line
 
 MOST_DISKS = 100
 POINTS_PER_SEGMENT = 12
@@ -127,7 +128,7 @@ def _cables(
         holes = (centre + offset[:, None] * across)[:, : anchor + 1]
         tension = playback.columns["tension"][rows, number]
         taut, drawn = tension > 0.0, own_color(playback, int(color))
-        entity = f"cables/{escape_entity_path_part(name)}"
+        entity = f"cables/{escape_entity_path_part(plain_line(name))}"
         least, most = TAUT_WIDTH
         width = least + (most - least) * tension[taut] / measures.tension
         parts[entity] = Lines(holes[taut], drawn, width, 30.0, taut.astype(int))

@@ -26,6 +26,7 @@ from continuum_dyn.views.playback.recording import APPLICATION, send_beside, sen
 from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, free_ports
 from continuum_dyn.views.rerun_core.stream import Stream
 from statics.errors import LogError
+from statics.support.plain_text import plain_line
 
 INTERVAL = 0.5
 """Shortest time between two readings of the log, s."""
@@ -124,7 +125,7 @@ def main() -> None:
     )
     recording = rr.RecordingStream(APPLICATION)
     recording.connect_grpc(f"rerun+http://{LOOPBACK}:{port}/proxy")
-    recording.send_recording_name(path.stem)
+    recording.send_recording_name(plain_line(path.stem))
     follow(path, since, Follower(recording), lambda: os.getppid() == parent and viewer.poll() is None)
     if viewer.poll() is None:
         recording.flush(timeout_sec=FLUSH_TIME)

@@ -9,6 +9,7 @@ from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.scenario.scenario import Scenario
 from statics.errors import LogError
+from statics.support.plain_text import plain_line
 
 FRAMES_PER_SECOND = 60
 SHORTEST_PLAYBACK = 10.0
@@ -87,7 +88,7 @@ def names_of(logs: Sequence[Log]) -> list[str]:
     """A distinct name for each log shown with others: its file's, with as much of its path as needed."""
     if len(logs) == 1:
         return [""]
-    paths = [log.path.resolve().with_suffix("").parts for log in logs]
+    paths = [tuple(map(plain_line, log.path.resolve().with_suffix("").parts)) for log in logs]
     for length in range(1, max(map(len, paths)) + 1):
         names = [" ".join(parts[-length:]) for parts in paths]
         if len(set(names)) == len(names):

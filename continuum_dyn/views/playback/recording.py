@@ -12,6 +12,7 @@ import numpy as np
 import rerun_bindings as core
 
 from continuum_dyn.record import Log
+from continuum_dyn.record.sole_writer import temporary_name
 from continuum_dyn.views.playback import heat_map, plots
 from continuum_dyn.views.playback.about import about, ending
 from continuum_dyn.views.playback.arm import moving_parts, still_parts
@@ -23,6 +24,7 @@ from continuum_dyn.views.playback.playback import Playback, names_of, playback_o
 from continuum_dyn.views.rerun_core.stream import Stream, content
 from statics.errors import InputError, LogError
 from statics.support.interruption import defer_interruption
+from statics.support.plain_text import plain_line
 
 APPLICATION = "continuum-dyn"
 
@@ -34,7 +36,7 @@ def save(logs: Sequence[Log], path: Path) -> None:
     be written, and then nothing is left behind; ``InputError`` for logs that cannot be shown together.
     """
     recorded = record_logs(logs)
-    part = path.with_name(path.name + ".part")
+    part = temporary_name(path)
     with defer_interruption():
         try:
             part.write_bytes(recorded)
@@ -50,7 +52,9 @@ def record_logs(logs: Sequence[Log]) -> bytes:
     """The recording's content. Raises ``InputError`` for logs that cannot be shown together."""
     recording = Stream(core.new_recording(APPLICATION, uuid4().hex, False, False))
     memory = content(recording)  # its file sink waits for ever on a full disk (0.41)
-    core.send_recording_name(" and ".join(log.title or log.path.stem for log in logs), recording.native)
+    core.send_recording_name(
+        plain_line(" and ".join(log.title or log.path.stem for log in logs)), recording.native
+    )
     told = [
         playback_of(log, name, rank)
         for rank, (log, name) in enumerate(zip(logs, names_of(logs), strict=True))

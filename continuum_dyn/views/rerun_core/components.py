@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from statics.support.plain_text import plain
+
 TEXT, FLAG, CODE = pa.utf8(), pa.bool_(), pa.uint8()
 COLOR, SINGLE, DOUBLE, COUNT = pa.uint32(), pa.float32(), pa.float64(), pa.int64()
 NUMBERS = {CODE: np.uint8, COLOR: np.uint32, SINGLE: np.float32, DOUBLE: np.float64, COUNT: np.int64}
@@ -130,7 +132,7 @@ def arrow(kind: pa.DataType, values: Any) -> pa.Array:
         children = [arrow(COUNT, values) if n == ABSOLUTE else pa.nulls(0, kind[n].type) for n in range(4)]
         return pa.Array.from_buffers(kind, count, _buffers(which, where), children=children)
     if kind == TEXT:
-        texts = [text.encode() for text in values]
+        texts = [plain(text).encode() for text in values]
         return pa.Array.from_buffers(kind, len(texts), _buffers(_ends(texts), b"".join(texts)))
     values = np.asarray(values)
     if isinstance(kind, pa.FixedSizeListType | pa.ListType):
