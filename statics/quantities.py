@@ -170,7 +170,7 @@ static_tip_hysteresis | -    | m      | largest distance of the tip there and ba
 ring_down_misfit     | -     | 1      | part of a ring-down that is not the damped sinusoid fitted to it
 mode_frequency       | -     | Hz     | frequency of the mode that is nearest to a ring-down's
 mode_damping_ratio   | -     | 1      | damping ratio of that mode
-static_gap           | -     | m      | distance of the tip at the end from its last equilibrium
+static_gap           | -     | m      | distance of the tip at the end from where it rests
 """
 
 QUANTITIES: dict[str, Quantity] = {
