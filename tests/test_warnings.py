@@ -45,7 +45,7 @@ ODD = {
     "the core's mass twice": (STEP, ["arm.core_density=8000.0"], "counts twice"),
     "settled from the start": (STEP, ["study.settled_within=0.5"], "above all that the arm moves"),
     "a core that yields": (SCENARIOS / "follower_tip.toml", [], "a strain of 2.03 %"),
-    "samples too far apart": (STEP, ["study.samples=30"], "Ask for more than the 30 samples"),
+    "samples too far apart": (STEP, ["study.samples=30"], "too few: 30 in 1 s"),
     "explicit steps of a stiff arm": (
         STEP,
         ["solver.method=RK23", "study.duration=2e-4", "study.samples=20"],

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from continuum_dyn.commands.terminal.output import console
 from statics.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -49,18 +50,16 @@ def _words(heading: str) -> set[str]:
 
 
 def _print(table: "KeyTable") -> None:
-    from rich.console import Console
     from rich.table import Table
-    from rich.text import Text
 
-    console = Console(highlight=False)
-    console.print(Text(table.heading, style="bold"))
-    console.print(Text(table.text.replace("`", "")))
+    screen = console()
+    screen.print(table.heading)
+    screen.print(table.text.replace("`", ""))
     if table.keys:
         shown = Table(box=None, pad_edge=False, header_style="dim")
         for column in ("key", "may be", "by default", "meaning"):
             shown.add_column(column, overflow="fold", ratio={"may be": 2, "meaning": 4}.get(column))
         for key in table.keys:
-            shown.add_row(*(Text(cell.replace("`", "")) for cell in key))
-        console.print(shown)
-    console.print()
+            shown.add_row(*(cell.replace("`", "") for cell in key))
+        screen.print(shown)
+    screen.print()

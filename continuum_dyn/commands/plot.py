@@ -40,8 +40,8 @@ def plot(
     black and white.
     """
     from continuum_dyn.record import read_log
-    from continuum_dyn.record.sampling import describe_coarse_samples
     from continuum_dyn.views.figures import log_plots
+    from continuum_dyn.warnings.sampling import describe_coarse_samples
 
     for part in parts or []:
         if part not in log_plots.PARTS:
@@ -53,7 +53,7 @@ def plot(
     figure = log_plots.picture(read, parts or [], at or [])
     make_folder(picture.parent)
     save(figure, picture)
-    coarse = describe_coarse_samples(read)
+    coarse = describe_coarse_samples(read.trajectory)
     if coarse:
         say(f"samples: {coarse}", err=True)
     say(f"written: {picture}")

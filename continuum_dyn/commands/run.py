@@ -121,7 +121,6 @@ def answer(job: Job, as_json: bool) -> int:
 def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     from continuum_dyn.record import StreamedLog, read_log
     from continuum_dyn.record.comparison import compare
-    from continuum_dyn.record.sampling import describe_coarse_samples
     from continuum_dyn.simulation import simulate
 
     started = time.perf_counter()
@@ -138,9 +137,7 @@ def _answer(job: Job, quiet: bool) -> dict[str, Any]:
     record = _record(job.source, result, job.log, recording, wall_time)
     if comparison is not None:
         record["compared"] = asdict(comparison) | {"same": comparison.same}
-    coarse = describe_coarse_samples(log)
-    record["warnings"] = [f"samples {coarse}"] if coarse else []
-    extra = {"coarse": coarse, "comparison": comparison, "source": job.source, "without_recording": without}
+    extra = {"comparison": comparison, "source": job.source, "without_recording": without}
     return {"run": result, "log": job.log, "record": record} | extra
 
 
@@ -243,14 +240,12 @@ def _show(report: dict[str, Any]) -> None:
         table.add_row("gap to static", f"{length(result.static_gap)} from {rest}")
     if result.trajectory is not None:
         _add_motion(table, result)
-    if report["coarse"]:
-        table.add_row("samples", report["coarse"])
     if result.tip_error is not None:
         table.add_row("accuracy", _accuracy(result, result.tip_error))
     if result.bending_strain is not None:
         table.add_row("bending", f"{100 * result.bending_strain:.2g} % strain of the core at most")
     for warning in result.warnings:
-        table.add_row("[yellow]warning[/yellow]", escape(warning))
+        table.add_row("warning", warning)
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     if report["comparison"] is not None:
         table.add_row("compared", _comparison_text(report["comparison"], report["source"]))

@@ -9,11 +9,11 @@ from continuum_dyn.integrators.choice import choose
 from continuum_dyn.integrators.methods import METHODS
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import cut_into_intervals
+from continuum_dyn.warnings.sampling import describe_coarse_samples
 from continuum_dyn.warnings.units import core_radius
 
 if TYPE_CHECKING:
     from continuum_dyn.simulation.run import Run
-    from continuum_dyn.simulation.trajectory import Trajectory
 
 LARGEST_STRAIN = 0.02
 """Bending strain above which few cores stay elastic."""
@@ -70,24 +70,8 @@ def coarser_than_the_travel(run: "Run") -> Iterator[str]:
 def samples_too_far_apart(run: "Run") -> Iterator[str]:
     """Warn of samples between which the arm swings unseen."""
     moved = run.trajectory
-    if moved is not None and moved.time.size > 2 and (unseen := _unseen(moved)) > UNSEEN:
-        yield (
-            f"between samples, {np.diff(moved.time).max():.2g} s apart, the arm moves by "
-            f"{100 * unseen:.2g} % of its travel unseen: a plot of them shows swings that are not there. "
-            f"Ask for more than the {moved.time.size} samples."
-        )
-
-
-def _unseen(moved: "Trajectory") -> float:
-    """Departure of bend angles from what their rates at two samples tell, over their travel.
-
-    Of all times between samples one of the largest, for a jump of a tension shows in the first ones.
-    """
-    apart = np.diff(moved.time)[:, None]
-    expected = 0.5 * apart * (moved.bend_angle_rate[1:] + moved.bend_angle_rate[:-1])
-    travel = float(np.ptp(moved.bend_angle, axis=0).max())
-    departures = np.sort(np.abs(np.diff(moved.bend_angle, axis=0) - expected).max(axis=1))
-    return float(departures[-min(OFTEN, departures.size)]) / travel if travel else 0.0
+    if moved is not None and (coarse := describe_coarse_samples(vars(moved))):
+        yield f"samples are {coarse}."
 
 
 def explicit_on_a_stiff_arm(run: "Run") -> Iterator[str]:

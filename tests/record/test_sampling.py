@@ -9,7 +9,7 @@ from logs_by_hand import motion_log
 from typer.testing import CliRunner
 
 from continuum_dyn.cli import app
-from continuum_dyn.record.sampling import describe_coarse_samples
+from continuum_dyn.warnings.sampling import describe_coarse_samples
 
 FREQUENCY = 7.0
 
@@ -24,7 +24,7 @@ def test_sine_is_shown_by_more_than_three_samples_per_period(per_period: float, 
     log = motion_log(
         samples, duration=10.0, bend_angle=angle[:, None] * half, bend_angle_rate=rate[:, None] * half
     )
-    message = describe_coarse_samples(log)
+    message = describe_coarse_samples(log.trajectory)
     assert bool(message) == coarse
     if coarse:
         assert f"{per_period:.2g} per period of a motion at about 7" in message
@@ -33,7 +33,7 @@ def test_sine_is_shown_by_more_than_three_samples_per_period(per_period: float, 
 
 def test_arm_at_rest_is_shown_by_any_samples() -> None:
     log = motion_log(5, bend_angle=np.ones((5, 2)), bend_angle_rate=np.zeros((5, 2)))
-    assert not describe_coarse_samples(log)
+    assert not describe_coarse_samples(log.trajectory)
 
 
 def test_run_and_plot_warn_of_too_few_samples(tmp_path: Path) -> None:

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from continuum_dyn.record import Log
-from continuum_dyn.record.sampling import describe_coarse_samples
 from continuum_dyn.views.figures.axis_units import Axis, axis
 from continuum_dyn.views.figures.backbone import backbone
 from continuum_dyn.views.figures.heading import add_note, set_heading
+from continuum_dyn.warnings.sampling import describe_coarse_samples
 from statics.errors import InputError
 
 ARC_POINTS = 12
@@ -72,7 +72,7 @@ def picture(log: Log, parts: Sequence[str] = (), at: Sequence[float] = ()) -> Fi
     for part in shown:
         PARTS[part](axes[part], log, series, at)
     set_heading(figure, log.title)
-    coarse = describe_coarse_samples(log)
+    coarse = describe_coarse_samples(log.trajectory)
     if coarse and not series.rest:
         add_note(figure, f"Samples {coarse}")
     return figure

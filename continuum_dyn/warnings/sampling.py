@@ -1,8 +1,8 @@
-"""Whether the samples of a logged motion are close enough to show it."""
+"""Whether the samples of a motion are close enough to show it."""
+
+from collections.abc import Mapping
 
 import numpy as np
-
-from continuum_dyn.record.log import Log
 
 COARSE = 0.25
 """Largest difference of the tip's turn by its rates from its turn by its angles, over the latter.
@@ -15,18 +15,18 @@ NOTHING = 1e-12
 """Smallest turn of the tip that counts as a motion, rad."""
 
 
-def describe_coarse_samples(log: Log) -> str:
+def describe_coarse_samples(columns: Mapping[str, np.ndarray]) -> str:
     """Message about samples too far apart for what moves; empty if they show it.
 
+    ``columns`` are a trajectory's, by glossary name.
     The trapezoidal rule on the rates at two samples gives the tip's turn between them, unless it swings
     there and back.
     """
-    columns = log.trajectory
     if not columns or columns["time"].size < 3:
         return ""
     time = columns["time"]
     angle, rate = columns["bend_angle"].sum(axis=1), columns["bend_angle_rate"].sum(axis=1)
-    with np.errstate(all="ignore"):  # a log may hold any numbers
+    with np.errstate(all="ignore"):  # columns may hold any numbers
         turns = np.diff(angle)
         by_rates = 0.5 * np.diff(time) * (rate[1:] + rate[:-1])
         turned, away = np.linalg.norm(turns), np.linalg.norm(by_rates - turns)
