@@ -45,6 +45,7 @@ benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/start_up.py
 	$(BIN)/python benchmarks/energy.py
+	$(BIN)/python benchmarks/friction_in_motion.py
 
 pictures: $(VENV)/dev ## Make the pictures of the README and the pages again.
 	$(BIN)/python docs/pictures.py

@@ -84,7 +84,7 @@ def fixed_steps(
     arm = (span.pieces, segments, disks)
     shape = (count + 1, dynamics.scene.arm.disks, dynamics.dofs)
     records = (np.empty(shape[0]), np.empty((shape[0], y.size)), np.empty(shape), np.empty((shape[0], 3, 2)))
-    method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, 0.0)
+    method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, 0.0, np.inf)
     n, dofs = shape[1:]
     stages = tuple(np.empty((len(tableau.c), n, dofs)) for _ in range(3))
     workspace = np.empty((n, kernel.widths["chain"])), np.empty((6, n, dofs)), np.empty(SCALARS)

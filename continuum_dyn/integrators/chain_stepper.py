@@ -59,7 +59,9 @@ class ChainStepper(Stepper):
         self.spans, self.span = spans, 0
         self.tableau = tableau
         self.tolerance = tolerance
-        self.lasting = 1.0 / dynamics.frequency if tableau.explicit else 0.0
+        self.slip_speed = dynamics.slip_speed
+        rates_count = tableau.explicit or np.isfinite(self.slip_speed)
+        self.lasting = 1.0 / dynamics.frequency if rates_count else 0.0
         self.corner_step = CORNER_STEP / dynamics.frequency
         shape = (BATCH + 1, dynamics.scene.arm.segments, dynamics.dofs)
         self.records = (
@@ -127,7 +129,7 @@ class ChainStepper(Stepper):
             self.next_step,
             self.rate,
             tuple(column[rows] for column in self.records),
-            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, self.lasting),
+            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, self.lasting, self.slip_speed),
             tableau.order,
             self.tolerance,
             self._arm,

@@ -6,15 +6,21 @@ Because q' = u, the acceleration w is the only unknown of a stage: with g = gamm
 
 U and Q are known from the stages before. The matrix leaves out the velocity's own terms, so that it is the
 chain's; Newton's method then takes about two iterations. Errors are metres: the largest displacement of a
-disk under the error of the coordinates and, in an explicit method, under that of the rates for as long as it
-may last. At the edge of their stability explicit steps keep every stiff mode shivering within the tolerance:
-by a displacement too small to see, with rates and a dissipation beyond those of the motion.
+disk under the error of the coordinates and, in an explicit method or where cables rub, under that of the
+rates for as long as it may last. At the edge of their stability explicit steps keep every stiff mode
+shivering within the tolerance: by a displacement too small to see, with rates and a dissipation beyond those
+of the motion.
+
+Where cables rub, a stage's equations are solved until the rates are right, too, to a part of the slip speed,
+about which friction changes its sign. In a short step, equations solved to a part of the tolerance leave
+them wrong by many times that speed: friction takes the wrong sign, the next step is as short, and the arm
+chatters.
 
 Arguments travel in groups:
 
 - ``arm``: pieces of the inputs' profiles, segment table, disk table;
-- ``method``: a, c, error weights, predictor of the tableau, and ``lasting``, the time (s) for which an error
-  of the rates is taken to last;
+- ``method``: a, c, error weights, predictor of the tableau; ``lasting``, the time (s) for which an error of
+  the rates is taken to last; ``slip_speed`` (m/s), infinite where no cable rubs;
 - ``stages``: q, u, w, shape (stages, n, dofs);
 - ``workspace``: chain; six arrays like q, shape (6, n, dofs); scalars;
 - ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,
@@ -45,13 +51,13 @@ from statics.kernels.slots import (
 from statics.passes.search import copy
 
 Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]
+Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, float]
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 MOST_ITERATIONS = 8
 """Newton iterations after which a stage is given up."""
 STAGE_PART = 0.02
-"""Largest error of a stage's equations, over the tolerance."""
+"""Largest error of a stage's equations, over the tolerance, and of its rates, over the slip speed."""
 ROOT_5 = math.sqrt(5.0)
 SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 
@@ -94,29 +100,35 @@ def solve_stage(
     known_q: np.ndarray,
     known_u: np.ndarray,
     g: float,
-    allowed: float,
+    tolerance: float,
+    slip_speed: float,
     rate: float,
     stage: Triple,
     inputs: np.ndarray,
     arm: Triple,
     workspace: Triple,
 ) -> tuple[int, float]:
-    """Newton's method for one ``stage``: its q, u and w (n, dofs), w from its predictor; ``allowed`` in m.
+    """Newton's method for one ``stage``: its q, u and w (n, dofs), w from its predictor; ``tolerance`` in m.
 
-    Returns the iterations (negative if it did not converge), and the rate of convergence.
+    Returns the iterations (negative if it did not converge), and the rate of convergence. That of earlier
+    stages is not believed while an iteration changes speeds by more than ``slip_speed``, m/s: friction may
+    have changed its sign on the way.
     """
     q, u, w = stage
     _, segments, disks = arm
     chain, work, scalars = workspace
     residual, descent, change = work[0], work[1], work[2]
     n = q.shape[0]
+    # At a given error of the displacement, that of the rates is the larger the shorter the step.
+    slip = g * slip_speed if g > 0.0 else math.inf
+    allowed = STAGE_PART * min(tolerance, slip)
     last, iterations = 0.0, 0
     while True:
         for i in range(q.shape[0]):
             for k in range(q.shape[1]):
                 u[i, k] = known_u[i, k] + g * w[i, k]
                 q[i, k] = known_q[i, k] + g * u[i, k]
-        if iterations < 0 or (iterations > 0 and last * rate <= allowed * (1.0 - rate)):
+        if iterations > 0 and last <= slip and last * rate <= allowed * (1.0 - rate):
             return iterations, rate
         if iterations == MOST_ITERATIONS:
             return -iterations, rate
@@ -157,7 +169,7 @@ def step_once(
     stage's. Returns the error (m; infinite if a stage did not converge), the rate of convergence, and the
     Newton iterations.
     """
-    a, c, error_weights, predictor, lasting = method
+    a, c, error_weights, predictor, lasting, slip_speed = method
     stage_q, stage_u, stage_w = stages
     chain, work, scalars = workspace
     count, n, dofs = stage_w.shape
@@ -178,7 +190,8 @@ def step_once(
             work[3],
             work[4],
             a[s, s] * h,
-            STAGE_PART * tolerance,
+            tolerance,
+            slip_speed,
             rate,
             (stage_q[s], stage_u[s], stage_w[s]),
             inputs,

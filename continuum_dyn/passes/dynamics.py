@@ -99,6 +99,12 @@ class Dynamics:
         inertia = arm.total_mass * arm.total_length**2
         return float(np.sqrt(stiffness / inertia)) if stiffness else 1.0
 
+    @cached_property
+    def slip_speed(self) -> float:
+        """Smallest slip speed of the cables that rub, m/s; infinite if none does."""
+        kinds = zip(self.scene.arm.cables, self.scene.cable_kinds, strict=False)
+        return min((cable.slip_speed for cable, kind in kinds if kind.rubs), default=np.inf)
+
     def scales(self) -> np.ndarray:
         """Size of each entry of the state that compares with one rad of bending, for absolute tolerances.
 
