@@ -121,6 +121,9 @@ def with_exit_status(command: Callable[..., None]) -> Callable[..., None]:
         except ContinuumError as error:
             say(wrap(f"error: {error}"), err=True)
             raise typer.Exit(BAD_INPUT) from error
+        except MemoryError as error:
+            say("error: out of memory. Try fewer samples or segments, or give the program more.", err=True)
+            raise typer.Exit(BAD_INPUT) from error
         except KeyboardInterrupt as error:
             say("interrupted", err=True)
             raise typer.Exit(INTERRUPTED) from error

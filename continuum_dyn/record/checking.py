@@ -27,6 +27,10 @@ SMALL = 16_000_000
 """Largest size of a log's datasets, bytes, if its file is small."""
 MOST_EXPANSION = 100
 """Largest size of a log's datasets over that of its file, which may be compressed, if it is large."""
+LARGEST = 8_000_000_000
+"""Largest size of a log's datasets, bytes: more than the study with the most samples stores."""
+MOST_NAMES, LONGEST_NAME = 1000, 1000
+"""Largest number of names of cables, and length of one, bytes."""
 PLAIN_FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 """Compression and checksums that HDF5 has built in; others would load libraries."""
 
@@ -51,7 +55,8 @@ def departures(file: h5py.File) -> Iterator[str]:
     for name, known in GROUPS.items():
         yield from _wrong_group(file, name, known)
     yield from _wrong_arm(file)
-    yield from _too_large(file)
+    too_large = list(_too_large(file))
+    yield from too_large or _wrong_names(file)
 
 
 def _other_format(file: h5py.File) -> Iterator[str]:
@@ -216,17 +221,35 @@ def _wrong_shapes(
 
 
 def _too_large(file: h5py.File) -> Iterator[str]:
-    """Datasets declared larger than the file can hold."""
-    allowed = max(SMALL, MOST_EXPANSION * file.id.get_filesize())
+    """Datasets declared larger than the file can hold, by themselves or by the chunks they are read in."""
+    allowed = min(max(SMALL, MOST_EXPANSION * file.id.get_filesize()), LARGEST)
     groups = [member(file, name, h5py.Group)[0] for name in ("tables", *GROUPS)]
     declared = 0
     for group in groups:
         for name in group or ():
             found = member(group, name, h5py.Dataset)[0]
             if found is not None and found.shape is not None:
-                declared += int(np.prod(found.shape, dtype=object)) * found.dtype.itemsize
+                shapes = [found.shape] if found.chunks is None else [found.shape, found.chunks]
+                counts = [int(np.prod(shape, dtype=object)) for shape in shapes]
+                declared += (max(counts) if counts[0] else 0) * found.dtype.itemsize
     if declared > allowed:
         yield f"datasets of {declared:.3g} bytes in a file of {file.id.get_filesize():.3g}: not read"
+
+
+def _wrong_names(file: h5py.File) -> Iterator[str]:
+    """Names of cables that are too many or too long; read one by one: all may be one long text."""
+    arm = member(file, "arm", h5py.Group)[0]
+    names = None if arm is None else member(arm, "cable", h5py.Dataset)[0]
+    if names is None or kind_of(names) is not Kind.TEXT or names.ndim != 1:
+        return
+    if names.size > MOST_NAMES:
+        yield f"{names.name}: {names.size} names; at most {MOST_NAMES} are read"
+        return
+    for number in range(names.size):
+        length = len(names[number])
+        if length > LONGEST_NAME:
+            yield f"{names.name}: a name of {length} characters; at most {LONGEST_NAME} are read"
+            return
 
 
 def oddities(file: h5py.File) -> Iterator[str]:
@@ -273,6 +296,8 @@ def _odd_scales(group: h5py.Group, known: Mapping[str, Column]) -> Iterator[str]
 def _attachments(scale: h5py.Dataset) -> Iterator[tuple[str, int]]:
     """Names of the datasets that a scale is attached to, and which of their axes."""
     if "REFERENCE_LIST" not in scale.attrs:
+        return
+    if scale.attrs.get_id("REFERENCE_LIST").get_storage_size() > SMALL:
         return
     places = scale.attrs["REFERENCE_LIST"]
     if getattr(places.dtype, "names", None) != ("dataset", "dimension"):

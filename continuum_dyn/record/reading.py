@@ -2,20 +2,24 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import fields
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from continuum_dyn.record.checking import attribute, departures, kind_of, oddities
+from continuum_dyn.record.checking import LARGEST, attribute, departures, kind_of, oddities
 from continuum_dyn.record.datasets import reason
 from continuum_dyn.record.heaps import has_damaged_heaps
 from continuum_dyn.record.log import Log
 from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES, Kind
 from continuum_dyn.record.unclosed import is_unclosed, open_unclosed
+from statics.arm import Arm
 from statics.errors import LogError
 from statics.outcome import Outcome
 
+ARM_NUMBERS = [each.name for each in fields(Arm)]
+"""Attributes of the arm that may be numbers; a file may have any others."""
 MAX_SHOWN = 12
 """Largest number of departures from the format that an error lists."""
 
@@ -52,6 +56,8 @@ def list_departures(path: Path) -> list[str]:
 def open_log(path: Path) -> Iterator[h5py.File]:
     """Open an HDF5 file to read, also while it is written. Raises ``LogError`` if HDF5 cannot read it."""
     try:
+        if path.stat().st_size > LARGEST:
+            raise LogError(f"{path}: larger than any log, {LARGEST / 1e9:g} GB; it is not read.")
         with open_unclosed(path) if is_unclosed(path) else h5py.File(path, "r", locking=False) as file:
             if has_damaged_heaps(path, file):
                 raise LogError(f"{path}: its texts are damaged. Run its scenario again.")
@@ -72,7 +78,7 @@ def _read(file: h5py.File, path: Path) -> Log:
     attributes = {name: attribute(file, name) for name in names if name in file.attrs}
     arm = file["arm"]
     arrays = {name: _arrays(file, name) for name in GROUPS}
-    numbers = {name: attribute(arm, name) for name in arm.attrs}
+    numbers = {name: attribute(arm, name) for name in ARM_NUMBERS if name in arm.attrs}
     tables = file["tables"].values()
     counted = file.get("trajectory")
     return Log(

@@ -12,7 +12,7 @@ from textwrap import shorten
 from typing import Any, get_origin
 
 from continuum_dyn.scenario_files.tables import ScenarioFile
-from continuum_dyn.scenario_files.toml_text import toml_text
+from continuum_dyn.scenario_files.toml_text import read_toml, toml_text
 from statics.errors import InputError, did_you_mean
 from statics.support.checked import LONGEST_LINE
 
@@ -42,7 +42,7 @@ def apply_overrides(text: str, name: str, overrides: Sequence[str]) -> str:
     """
     if not overrides:
         return text
-    content = tomllib.loads(text)
+    content = read_toml(text)
     title = f"{content.pop('title', name)}, {', '.join(overrides)}"
     content = {"title": shorten(title, LONGEST_LINE, placeholder=" ...")} | content
     for change in map(_parse, overrides):
@@ -50,11 +50,17 @@ def apply_overrides(text: str, name: str, overrides: Sequence[str]) -> str:
     return "\n".join([f"# {name}, with", *(f"#   {override}" for override in overrides), toml_text(content)])
 
 
+def _short(text: str) -> str:
+    """The text that was read, cut after 80 characters."""
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
 def _parse(text: str) -> Override:
     parts = _KEY_AND_VALUE.fullmatch(text) if text.isprintable() else None
     if parts is None:
         raise InputError(
-            f"--set {text!r}: not KEY=VALUE. Try such as arm.disks=16, or cables.upper.tension.after=2."
+            f"--set {_short(text)!r}: not KEY=VALUE. Try such as arm.disks=16, or "
+            "cables.upper.tension.after=2."
         )
     *tables, key = _words(parts[1].strip(), text)
     return Override(text, tuple(tables), key, _value(parts[2].strip(), text))
@@ -64,11 +70,11 @@ def _words(key: str, text: str) -> list[str]:
     """The words of a dotted key, some of which may be quoted."""
     words: list[str] = []
     try:
-        inside: Any = tomllib.loads(f"{key} = 0")
+        inside: Any = read_toml(f"{key} = 0")
     except tomllib.TOMLDecodeError as error:
         raise InputError(
-            f"--set {text}: {key!r} is no key. Words of letters, digits, - and _ with dots between them are, "
-            "others in quotes: cables.'left one'.tension."
+            f"--set {_short(text)}: {_short(key)!r} is no key. Words of letters, digits, - and _ with "
+            "dots between them are, others in quotes: cables.'left one'.tension."
         ) from error
     while isinstance(inside, dict):
         ((word, inside),) = inside.items()
@@ -78,13 +84,13 @@ def _words(key: str, text: str) -> list[str]:
 
 def _value(value: str, text: str) -> Any:
     try:
-        return tomllib.loads(f"value = {value}")["value"]
+        return read_toml(f"value = {value}")["value"]
     except tomllib.TOMLDecodeError as error:
         if _WORD.fullmatch(value):
             return value
         raise InputError(
-            f"--set {text}: {value!r} is no value. Such are 2, 1e-3, true, [0.0, 1.0], chain, "
-            """'"two words"' and '{ profile = "step", before = 0, after = 2 }'."""
+            f"--set {_short(text)}: {_short(value)!r} is no value. Such are 2, 1e-3, true, [0.0, 1.0], "
+            """chain, '"two words"' and '{ profile = "step", before = 0, after = 2 }'."""
         ) from error
 
 
@@ -110,9 +116,11 @@ def _holds_tables(place: Any) -> bool:
 def _no_table(change: Override, depth: int, place: Any) -> InputError:
     where = ".".join(change.tables[:depth])
     if _holds_tables(place):
-        return InputError(f"--set {change.text}: {where} is a list of tables. Name a table and its key.")
+        return InputError(
+            f"--set {_short(change.text)}: {where} is a list of tables. Name a table and its key."
+        )
     return InputError(
-        f"--set {change.text}: {where} is {place!r:.60}, without keys. Set it as a whole: {where}=..."
+        f"--set {_short(change.text)}: {where} is {place!r:.60}, without keys. Set it as a whole: {where}=..."
     )
 
 
@@ -124,7 +132,9 @@ def _find_table(word: str, tables: list[Any], change: Override, depth: int) -> d
         str(table.get("name", f"{kind}_{number}")): table for number, table in enumerate(tables, start=1)
     }
     if not known:
-        raise InputError(f"--set {change.text}: the scenario has no [[{header}]].")
+        raise InputError(f"--set {_short(change.text)}: the scenario has no [[{header}]].")
     if word not in known:
-        raise InputError(f"--set {change.text}: no {kind} is named '{word}'.{did_you_mean(word, known)}")
+        raise InputError(
+            f"--set {_short(change.text)}: no {kind} is named '{_short(word)}'.{did_you_mean(word, known)}"
+        )
     return known[word]

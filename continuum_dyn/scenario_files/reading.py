@@ -22,6 +22,7 @@ from continuum_dyn.scenario_files.messages import explain
 from continuum_dyn.scenario_files.overrides import apply_overrides
 from continuum_dyn.scenario_files.tables import ScenarioFile
 from continuum_dyn.scenario_files.text import read_text
+from continuum_dyn.scenario_files.toml_text import read_toml
 from statics.errors import InputError
 from statics.support.plain_text import plain_line
 
@@ -57,7 +58,7 @@ def parse(
     """
     try:
         text = apply_overrides(text, plain_line(path.name), overrides)
-        content = tomllib.loads(text)
+        content = read_toml(text)
         _check_sizes(content, "")
         file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
         _check_tolerances(content)

@@ -2,10 +2,29 @@
 
 import json
 import re
+import tomllib
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+MAX_DEPTH = 32
+"""Largest number of words of a key: reading it takes a time in the square of it."""
+_WORD_AND_DOT = r"""(?<![\w-])(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"""
+_DEEP_KEY = re.compile(f"(?:{_WORD_AND_DOT}){{{MAX_DEPTH}}}")
+LARGEST_DECIMAL = 1 << 64
+"""Largest size of an integer that is written in decimal digits, of which Python writes no thousands."""
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def read_toml(text: str) -> dict[str, Any]:
+    """Read TOML. Raises ``tomllib.TOMLDecodeError``, also for keys and numbers that would take too long."""
+    if _DEEP_KEY.search(text):
+        raise tomllib.TOMLDecodeError(f"a key of more than {MAX_DEPTH} words with dots between them")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError as error:  # Python refuses integers of some thousand digits
+        raise tomllib.TOMLDecodeError("a number of too many digits to compute with") from error
 
 
 def toml_text(content: Mapping[str, Any]) -> str:
@@ -41,7 +60,9 @@ def _inline(value: Any) -> str:
         return f"[{', '.join(map(_inline, value))}]"
     if isinstance(value, bool):
         return str(value).lower()
-    return _quote(value) if isinstance(value, str) else str(value)
+    if isinstance(value, str):
+        return _quote(value)
+    return hex(value) if isinstance(value, int) and abs(value) > LARGEST_DECIMAL else str(value)
 
 
 def _quote(text: str) -> str:

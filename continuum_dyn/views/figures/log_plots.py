@@ -15,6 +15,8 @@ from continuum_dyn.warnings.sampling import describe_coarse_samples
 from statics.errors import InputError
 
 ARC_POINTS = 12
+LARGEST = 1e100
+"""Largest size of a number that is drawn: squares of larger ones overflow."""
 SHAPES = 6
 """Largest number of shapes that are drawn by default."""
 QUARTERS = 4
@@ -66,6 +68,7 @@ def picture(log: Log, parts: Sequence[str] = (), at: Sequence[float] = ()) -> Fi
     Raises ``InputError`` if the log holds nothing to draw, or if the values are not in it.
     """
     series = _series(log)
+    _check_sizes(log, series)
     shown = [part for part in PARTS if part in parts] or _worth_drawing(series)
     figure = Figure(figsize=(7.2, 5.6 if len(shown) > 1 else 3.8), layout="constrained")
     axes: dict[str, Any] = figure.subplot_mosaic(_places(shown, series))
@@ -76,6 +79,12 @@ def picture(log: Log, parts: Sequence[str] = (), at: Sequence[float] = ()) -> Fi
     if coarse and not series.rest:
         add_note(figure, f"Samples {coarse}")
     return figure
+
+
+def _check_sizes(log: Log, series: LogSeries) -> None:
+    for name, values in series.columns.items():
+        if np.abs(values).max(initial=0.0) > LARGEST:
+            raise InputError(f"{log.path}: {name} holds numbers beyond {LARGEST:g}, which are not drawn.")
 
 
 def _series(log: Log) -> LogSeries:

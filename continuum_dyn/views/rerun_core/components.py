@@ -141,7 +141,9 @@ def arrow(kind: pa.DataType, values: Any) -> pa.Array:
         return pa.Array.from_buffers(kind, len(values), _buffers(*ends), children=rows)
     if kind == FLAG:
         return pa.Array.from_buffers(kind, len(values), _buffers(np.packbits(values, bitorder="little")))
-    return pa.Array.from_buffers(kind, len(values), _buffers(np.ascontiguousarray(values, NUMBERS[kind])))
+    with np.errstate(over="ignore"):  # single precision ends at 3e38
+        values = np.ascontiguousarray(values, NUMBERS[kind])
+    return pa.Array.from_buffers(kind, len(values), _buffers(values))
 
 
 def parts(values: pa.Array, counts: np.ndarray) -> pa.Array:
