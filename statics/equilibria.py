@@ -13,6 +13,7 @@ import numpy as np
 from statics.arm import Arm
 from statics.effects.cable_friction import FAR, SLIP_PART
 from statics.effects.cables import Poses, cable_lengths
+from statics.errors import NotFoundError
 from statics.kernels.loading import Loader, load
 from statics.outcome import Outcome
 from statics.passes import newton, pseudo_transient, search
@@ -106,7 +107,15 @@ class Equilibrium:
 
     @property
     def tip(self) -> tuple[float, float, float]:
-        """x, y (m) and theta (rad) of the last disk."""
+        """x, y (m) and theta (rad) of the last disk.
+
+        Raises ``NotFoundError`` where no equilibrium was found: there the arrays hold where the search ended.
+        """
+        if not self.found:
+            raise NotFoundError(
+                f"no equilibrium was found {self.drive} ({self.outcome}), so there is no tip of one. Look at "
+                "'found' first; disk_x, disk_y and disk_theta say where the search ended."
+            )
         return float(self.disk_x[-1]), float(self.disk_y[-1]), float(self.disk_theta[-1])
 
     @property
