@@ -21,6 +21,8 @@ from statics.passes.rest_passes import REST
 from statics.scene import Scene
 
 MAX_ITERATIONS = 200
+MORE_STEPS = 5
+"""Most further steps of a search whose last step was small, and left a force unbalanced."""
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
 """Slip lengths over the arm's length that a search with friction goes through, from soft to what they are."""
 
@@ -183,7 +185,14 @@ class StaticSolver:
                     return left.pop()
                 ended, more = self._find(q, inputs, MAX_ITERATIONS - iterations)
                 iterations += more
-        return replace(self.examine(q, inputs, ended, iterations), left=tuple(left))
+        found = self.examine(q, inputs, ended, iterations)
+        for _ in range(MORE_STEPS if ended == search.STABLE else 0):
+            if found.found:
+                break
+            ended, more = self._find(q, inputs, MAX_ITERATIONS)
+            iterations += more
+            found = self.examine(q, inputs, ended, iterations)
+        return replace(found, left=tuple(left))
 
     def _find(self, q: np.ndarray, inputs: np.ndarray, most: int) -> tuple[int, int]:
         """Move q to an equilibrium; returns how the search ended, and its iterations."""
