@@ -24,6 +24,8 @@ SMALL = 1e-6
 """Change of a bend angle (rad) by which accelerations are differenced."""
 NEUTRAL = 1e-7
 """Largest growth over a rate's size that is rounding."""
+FARTHEST = 1e13
+"""Largest over smallest absolute eigenvalue, above which rounding of the largest drowns the smallest."""
 WITHIN = 1e-3
 """Relative error allowed to the iteration for the largest eigenvalue."""
 
@@ -178,7 +180,10 @@ class _Motion(NamedTuple):
 
 
 def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]:
-    """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first."""
+    """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first.
+
+    Raises ``InputError`` where the fastest motion is too fast for the slowest to be seen beside it.
+    """
     size, scales = dynamics.size, dynamics.scales()[: dynamics.size]
     jacobian = linearized(dynamics, y, span)[: 2 * size, : 2 * size]
     free = not jacobian[size:, size:].any()
@@ -195,6 +200,7 @@ def _free(accelerations: np.ndarray, scales: np.ndarray) -> list[_Motion]:
     can bring about, flutters: it swings twice, once growing and once dying away.
     """
     squares, vectors = np.linalg.eig(accelerations)
+    _check_spread(np.sqrt(np.abs(squares)), np.sqrt(FARTHEST))
     motions = []
     for square, shape in zip(squares, _in_step(vectors, scales).T, strict=True):
         rate = np.sqrt(complex(square))
@@ -211,6 +217,7 @@ def _damped(jacobian: np.ndarray, scales: np.ndarray) -> list[_Motion]:
     joined with the one of the other half whose shape is most like its own.
     """
     eigenvalues, vectors = np.linalg.eig(jacobian)
+    _check_spread(np.abs(eigenvalues), FARTHEST)
     decay, turning = -np.real(eigenvalues), np.imag(eigenvalues)
     shapes = _in_step(vectors[: scales.size], scales)
     pairs = [(int(k),) for k in np.flatnonzero(turning > 0.0)]
@@ -219,6 +226,17 @@ def _damped(jacobian: np.ndarray, scales: np.ndarray) -> list[_Motion]:
         _Motion(tuple(float(decay[k]) for k in pair), float(turning[pair[0]]), shapes[:, pair[0]])
         for pair in pairs
     ]
+
+
+def _check_spread(rates: np.ndarray, farthest: float) -> None:
+    """Raises ``InputError`` for rates (1/s) of which some are zero, or rounding of the largest."""
+    slowest, fastest = float(rates.min()), float(rates.max())
+    if not slowest * farthest > fastest:
+        raise InputError(
+            f"modes are lost in rounding: rates of the linearized motion reach from {slowest:.3g} to "
+            f"{fastest:.3g} 1/s, and may be a factor of {farthest:.2g} apart. Give the lightest nodes more "
+            "mass (disk_mass, core_density) or inertia, or leave out the damping that makes them so fast."
+        )
 
 
 def _in_step(vectors: np.ndarray, scales: np.ndarray) -> np.ndarray:

@@ -41,12 +41,12 @@ CATCHING = 1e-3
 """Longest step in which one may: there the path has a corner."""
 NEAR_LIMIT = 1e-3
 """Clearance below which a path that cannot be followed any further has come to a geometric limit."""
-JUST_BEFORE = 1e-9
-"""Distance before one of the ramp's points at which the interval before it counts."""
 LOCATED = 1e-13
 """Part of a step's length within which folds, limits and points of the ramp are located."""
 BRANCHING_LOCATED = 1e-6
 """The same for branchings: there the matrix is singular, and has no tangent for what is closer."""
+BESIDE_FOLD = 1e-4
+"""The same for the distance from a fold at which the unstable directions on either side of it are counted."""
 
 
 @dataclass(frozen=True)
@@ -102,10 +102,15 @@ def follow(
 
 
 class _PathPoint(NamedTuple):
-    """A point of the path: coordinates, the ramp's parameter, unit tangent, and what the elimination says."""
+    """A point of the path: coordinates, the ramp's parameter, unit tangent, and what the elimination says.
+
+    ``leg`` is the ramp's leg that the path is on, counted from 0: its inputs are linear from the point of
+    that number to the next one, and beyond both.
+    """
 
     q: np.ndarray
     parameter: float
+    leg: int
     along: np.ndarray
     along_parameter: float
     negative: int
@@ -126,10 +131,15 @@ class ArcLength:
         self.weight = segments / units**2
         """So that a uniform bend of the whole arm counts as its angle, whatever the number of segments."""
 
-    def inputs(self, parameter: float) -> np.ndarray:
-        """Inputs at a parameter, linear from one point of the ramp to the next and beyond its ends."""
-        point = min(max(int(parameter), 0), len(self.ramp) - 2)
-        return self.ramp[point] + (parameter - point) * (self.ramp[point + 1] - self.ramp[point])
+    def inputs(self, parameter: float, leg: int) -> np.ndarray:
+        """Inputs at a parameter, on a leg of the ramp or on its straight continuation."""
+        if parameter == leg + 1:
+            return self.ramp[leg + 1]
+        return self.ramp[leg] + (parameter - leg) * (self.ramp[leg + 1] - self.ramp[leg])
+
+    def leg_from(self, point: float, way: float) -> int:
+        """The leg that begins at a point of the ramp, forwards or backwards; at its ends the only one."""
+        return min(max(int(point) - (way < 0.0), 0), len(self.ramp) - 2)
 
     def residual(self, q: np.ndarray, inputs: np.ndarray) -> tuple[np.ndarray, float]:
         """Unbalanced generalized forces, shape of q, and the clearance."""
@@ -137,17 +147,16 @@ class ArcLength:
         numbers = (inputs, solver.segments, solver.disks, self.chain)
         return residual, newton.unbalanced(self.kernel.passes, q, *numbers, residual)
 
-    def by_parameter(self, q: np.ndarray, parameter: float) -> np.ndarray:
+    def by_parameter(self, q: np.ndarray, parameter: float, leg: int) -> np.ndarray:
         """Derivative of the residual by the ramp's parameter."""
-        point = min(max(int(parameter), 0), len(self.ramp) - 2)
-        way = self.ramp[point + 1] - self.ramp[point]
-        ahead, behind = (self.inputs(parameter) + sign * self.half_difference * way for sign in (1, -1))
+        way = self.ramp[leg + 1] - self.ramp[leg]
+        ahead, behind = (self.inputs(parameter, leg) + sign * self.half_difference * way for sign in (1, -1))
         return (self.residual(q, ahead)[0] - self.residual(q, behind)[0]) / (2 * self.half_difference)
 
     def taut(self, at: _PathPoint) -> list[bool]:
         """Which cables pull at a point: of those driven by their length some may be slack."""
         solver, pose = self.solver, np.empty((len(at.q), 3))
-        inputs = self.inputs(at.parameter)
+        inputs = self.inputs(at.parameter, at.leg)
         numbers = (inputs, solver.segments, solver.disks, self.chain)
         self.kernel.run("observe", at.q, *numbers, pose)
         disks = pose[solver.scene.arm.disk_nodes].T
@@ -159,37 +168,27 @@ class ArcLength:
         numbers = (solver.segments, solver.disks, self.chain, right, change)
         return change, newton.solve_exactly(self.kernel.passes, *numbers)
 
-    def tangent_at(
-        self, q: np.ndarray, parameter: float, backwards: bool = False
-    ) -> tuple[np.ndarray, int, float]:
-        """dq/dplace along the path, the number of unstable directions, and the clearance.
-
-        At one of the ramp's points it is that of the stretch ahead, or behind if the path goes backwards.
-        """
-        by_parameter = self.by_parameter(q, parameter - JUST_BEFORE if backwards else parameter)
-        clearance = self.residual(q, self.inputs(parameter))[1]
+    def tangent_at(self, q: np.ndarray, parameter: float, leg: int = 0) -> tuple[np.ndarray, int, float]:
+        """dq/dplace along the path, the number of unstable directions, and the clearance."""
+        by_parameter = self.by_parameter(q, parameter, leg)
+        clearance = self.residual(q, self.inputs(parameter, leg))[1]
         return *self.solve(by_parameter), clearance
 
     def point_at(
-        self, q: np.ndarray, parameter: float, towards: tuple[np.ndarray, float], corrections: int = 0
-    ) -> _PathPoint:
-        """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
-        return self._with_tangent(q, parameter, towards, corrections, backwards=towards[1] < 0.0)
-
-    def _with_tangent(
         self,
         q: np.ndarray,
         parameter: float,
+        leg: int,
         towards: tuple[np.ndarray, float],
         corrections: int = 0,
-        *,
-        backwards: bool,
     ) -> _PathPoint:
-        by_parameter, negative, clearance = self.tangent_at(q, parameter, backwards)
+        """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
+        by_parameter, negative, clearance = self.tangent_at(q, parameter, leg)
         length = np.sqrt(self.inner(by_parameter, by_parameter) + 1.0)
         ahead = self.inner(by_parameter, towards[0]) + towards[1] >= 0.0
         length = length if ahead else -length
-        return _PathPoint(q, parameter, by_parameter / length, 1.0 / length, negative, clearance, corrections)
+        tangent = by_parameter / length, 1.0 / length
+        return _PathPoint(q, parameter, leg, *tangent, negative, clearance, corrections)
 
     def inner(self, one: np.ndarray, other: np.ndarray) -> float:
         """Scalar product of two changes of coordinates, in rad^2."""
@@ -198,10 +197,10 @@ class ArcLength:
     def corrected(self, here: _PathPoint, length: float) -> _PathPoint | None:
         """The point of the path that far along its tangent, by Newton's method; None if it is not found."""
         q, parameter = here.q + length * here.along, here.parameter + length * here.along_parameter
-        size = np.inf
+        size, leg = np.inf, here.leg
         for correction in range(1, MOST_CORRECTIONS + 1):
-            by_parameter = self.by_parameter(q, parameter)
-            residual, _ = self.residual(q, self.inputs(parameter))
+            by_parameter = self.by_parameter(q, parameter, leg)
+            residual, _ = self.residual(q, self.inputs(parameter, leg))
             change, _ = self.solve(residual)
             turning, _ = self.solve(by_parameter)
             lacking = length - self.inner(here.along, q - here.q)
@@ -213,19 +212,22 @@ class ArcLength:
                 return None
             q, parameter = q + change, parameter + step
             if size < search.AT_REST and not (self.by_length and size < search.FALLING * last):
-                return self.point_at(q, parameter, (here.along, here.along_parameter), correction)
+                return self.point_at(q, parameter, leg, (here.along, here.along_parameter), correction)
         return None
 
     def at_point(self, near: _PathPoint, point: float, way: float) -> tuple[_PathPoint, _PathPoint]:
         """The equilibrium at exactly a point of the ramp, from one within rounding of it.
 
         As the path comes to it and as it goes on, ``way`` 1 forwards or -1 backwards: the ramp may have a
-        corner there.
+        corner there, or turn back.
         """
-        residual, _ = self.residual(near.q, self.inputs(point))
+        residual, _ = self.residual(near.q, self.inputs(point, near.leg))
         q = near.q + self.solve(residual)[0]
         towards = 0.0 * q, way
-        return self._with_tangent(q, point, towards, backwards=way > 0.0), self.point_at(q, point, towards)
+        coming, going = (
+            self.point_at(q, point, leg, towards) for leg in (near.leg, self.leg_from(point, way))
+        )
+        return coming, going
 
     def located(
         self, here: _PathPoint, there: float, value: Callable[[_PathPoint], float], within: float = LOCATED
@@ -269,7 +271,7 @@ class _Follower:
 
     def __init__(self, arc: ArcLength, first: Equilibrium) -> None:
         self.arc, self.length, self.forwards = arc, FIRST_STEP, True
-        self.here = arc.point_at(first.coordinates, 0.0, (0.0 * first.coordinates, 1.0))
+        self.here = arc.point_at(first.coordinates, 0.0, 0, (0.0 * first.coordinates, 1.0))
         self.points, self.parameters = [first], [0.0]
 
     def follow(self, steps: Iterable[object], until_critical: bool) -> Path:
@@ -278,11 +280,12 @@ class _Follower:
             stepped = self._step()
             if stepped is None:
                 return self._lost()
+            before = self.here.negative
             self.here, critical, at_limit = stepped
             if at_limit:
                 return self._ended(Outcome.GEOMETRY_LIMIT)
             if critical or self.here.parameter in range(last + 1):
-                self._keep(critical)
+                self._keep(critical, before)
             if critical and until_critical:
                 return Path(Outcome.COMPLETED, self.points, self.parameters, self.points[-1])
             if not critical and self.here.parameter == last:
@@ -321,35 +324,68 @@ class _Follower:
     def _cut(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
         """A step up to the first of what it passes: a limit, a point of the ramp, a fold, a branching."""
         arc, here = self.arc, self.here
-        if there.clearance < search.AT_LIMIT:
+        at_limit = there.clearance < search.AT_LIMIT
+        if at_limit:
             cut = arc.located(here, length, lambda at: at.clearance - search.AT_LIMIT)
-            return None if cut is None else (cut[0], Critical.NO, True)
+            if cut is None:
+                return None
+            there, length = cut
         point, come_to = _point_between(here.parameter, there.parameter), there
         if point is not None:
             cut = arc.located(here, length, lambda at: at.parameter - point)
             if cut is None:
                 return None
             come_to, there = arc.at_point(cut[0], point, np.sign(there.parameter - here.parameter))
-            length = cut[1]
-        if not self._is_smooth(come_to, length):
+            length, at_limit = cut[1], False
+        if not at_limit and not self._is_smooth(come_to, length):
             return None
-        before, beyond = here.negative, there.negative
         if (there.along_parameter > 0.0) != self.forwards:
-            cut, critical = arc.located(here, length, lambda at: at.along_parameter), Critical.FOLD
-        elif before != beyond:
-            middle, critical = 0.5 * (before + beyond), Critical.BRANCHING
-            cut = arc.located(here, length, lambda at: at.negative - middle, BRANCHING_LOCATED)
-        else:
-            return there, Critical.NO, False
-        return None if cut is None else (cut[0]._replace(negative=beyond), critical, False)
+            return self._cut_at_fold(there, length)
+        if here.negative != there.negative:
+            return self._cut_at_branching(there, length)
+        return there, Critical.NO, at_limit
 
-    def _keep(self, critical: Critical) -> None:
-        here, before = self.here, self.points[-1]
+    def _cut_at_fold(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
+        """A step up to the fold on its way, or to a branching before that; None if lost."""
+        arc, here = self.arc, self.here
+        cut = arc.located(here, length, lambda at: at.along_parameter)
+        if cut is None:
+            return None
+        fold, at = cut
+        ahead = arc.corrected(here, at * (1.0 - BESIDE_FOLD))
+        beyond = arc.corrected(here, min(length, at * (1.0 + BESIDE_FOLD))) or there
+        if ahead is not None and ahead.negative != here.negative:
+            return self._cut_at_branching(ahead, at * (1.0 - BESIDE_FOLD))
+        return fold._replace(negative=beyond.negative), Critical.FOLD, False
+
+    def _cut_at_branching(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
+        """A step up to the first place where the number of unstable directions changes; None if lost.
+
+        It is looked for where the number changes by one alone, or by more at once.
+        """
+        arc, here = self.arc, self.here
+        low = 0.0
+        while abs(there.negative - here.negative) > 1 and length - low > BRANCHING_LOCATED * length:
+            middle = 0.5 * (low + length)
+            at = arc.corrected(here, middle)
+            if at is None:
+                return None
+            if at.negative == here.negative:
+                low = middle
+            else:
+                there, length = at, middle
+        between = 0.5 * (here.negative + there.negative)
+        cut = arc.located(here, length, lambda at: at.negative - between, BRANCHING_LOCATED)
+        return None if cut is None else (cut[0]._replace(negative=there.negative), Critical.BRANCHING, False)
+
+    def _keep(self, critical: Critical, before: int) -> None:
+        """Keep the point that the path has come to; ``before`` it had so many unstable directions."""
+        here = self.here
         found = self._equilibrium()
         if critical is Critical.FOLD:
             self.forwards = not self.forwards
         if critical:
-            fewest = min(here.negative, before.unstable_directions or 0)
+            fewest = min(here.negative, before)
             found = replace(found, outcome=Outcome.UNSTABLE_EQUILIBRIUM, unstable_directions=fewest)
         self.points.append(replace(found, critical=critical))
         self.parameters.append(here.parameter)
@@ -357,7 +393,7 @@ class _Follower:
     def _equilibrium(self) -> Equilibrium:
         here, arc = self.here, self.arc
         ended = search.UNSTABLE if here.negative else search.STABLE
-        return arc.solver.examine(here.q, arc.inputs(here.parameter), ended)
+        return arc.solver.examine(here.q, arc.inputs(here.parameter, here.leg), ended)
 
     def _lost(self) -> Path:
         if self.here.clearance < NEAR_LIMIT:
@@ -379,9 +415,9 @@ def _hides_folds(here: _PathPoint, there: _PathPoint, length: float) -> bool:
 
 
 def _point_between(parameter: float, other: float) -> float | None:
-    """The ramp's point strictly between two parameters that comes first on the way; None without one."""
+    """The ramp's point that comes first on the way from one parameter to another; None without one."""
     if other > parameter:
         point = float(np.floor(parameter)) + 1.0
-        return point if point < other else None
+        return point if point <= other else None
     point = float(np.ceil(parameter)) - 1.0
-    return point if point > other else None
+    return point if point >= other else None

@@ -14,6 +14,7 @@ import numpy as np
 from statics.arm import Arm
 from statics.effects.cable_friction import FAR, SLIP_PART
 from statics.effects.cables import Poses, cable_lengths
+from statics.errors import NotFoundError
 from statics.kernels.loading import Loader, load
 from statics.outcome import Outcome
 from statics.passes import newton, pseudo_transient, search, sticking
@@ -25,6 +26,8 @@ MOST_STICKING = 100
 """Largest number of iterations of a search for cables that stick."""
 SHORTEST_STEP = 1 / 8
 """Shortest step from the inputs before to those asked, over the whole, of such a search in steps."""
+MORE_STEPS = 5
+"""Most further steps of a search whose last step was small, and left a force unbalanced."""
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
 """Slip lengths over the arm's length that a release goes through, from soft to what they are."""
 
@@ -111,7 +114,15 @@ class Equilibrium:
 
     @property
     def tip(self) -> tuple[float, float, float]:
-        """x, y (m) and theta (rad) of the last disk."""
+        """x, y (m) and theta (rad) of the last disk.
+
+        Raises ``NotFoundError`` where no equilibrium was found: there the arrays hold where the search ended.
+        """
+        if not self.found:
+            raise NotFoundError(
+                f"no equilibrium was found {self.drive} ({self.outcome}), so there is no tip of one. Look at "
+                "'found' first; disk_x, disk_y and disk_theta say where the search ended."
+            )
         return float(self.disk_x[-1]), float(self.disk_y[-1]), float(self.disk_theta[-1])
 
     @property
@@ -219,7 +230,14 @@ class StaticSolver:
                     return left.pop()
                 ended, more = self._find(q, inputs, MAX_ITERATIONS - iterations)
                 iterations += more
-        return replace(self.examine(q, inputs, ended, iterations), left=tuple(left))
+        found = self.examine(q, inputs, ended, iterations)
+        for _ in range(MORE_STEPS if ended == search.STABLE else 0):
+            if found.found:
+                break
+            ended, more = self._find(q, inputs, MAX_ITERATIONS)
+            iterations += more
+            found = self.examine(q, inputs, ended, iterations)
+        return replace(found, left=tuple(left))
 
     def _stick(self, start: np.ndarray, inputs: np.ndarray, *, exactly: bool) -> Equilibrium:
         """The equilibrium of cables that rub, from where they were: they stick, or slip from there.

@@ -12,6 +12,10 @@ class InputError(ContinuumError):
     """An input that cannot be simulated as it was given."""
 
 
+class NotFoundError(ContinuumError):
+    """A number asked of an equilibrium that was not found."""
+
+
 class KernelCacheError(ContinuumError):
     """The folder of generated kernels cannot be used safely."""
 

@@ -21,6 +21,7 @@ from statics import (
     equilibrium,
     tension_ramp,
 )
+from statics.errors import NotFoundError
 
 
 def test_upright_arm_leaves_the_straight_branch_where_it_is_unstable() -> None:
@@ -48,6 +49,14 @@ def test_ramp_beyond_the_limit_says_so_and_finds_its_way_back(paper_arm: Scene) 
     ramp = tension_ramp(paper_arm, [50.0, 90.0, 50.0])
     assert [point.outcome for point in ramp] == [Outcome.COMPLETED, Outcome.GEOMETRY_LIMIT, Outcome.COMPLETED]
     np.testing.assert_allclose(ramp[2].tip, ramp[0].tip, atol=1e-12)
+
+
+def test_tip_of_an_equilibrium_that_was_not_found_is_no_number(paper_arm: Scene) -> None:
+    beyond = equilibrium(paper_arm, 90.0)
+    assert not beyond.found
+    with pytest.raises(NotFoundError, match=r"no equilibrium was found at tension 90 N \(geometry_limit\)"):
+        _ = beyond.tip
+    assert np.isfinite(beyond.disk_x).all()
 
 
 def test_mirrored_cables_and_gravity_mirror_the_arm() -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import whole_arm
+from conftest import rone2012
 from scipy.optimize import root
 
 from continuum_dyn import Run, load_scenario, simulate
@@ -13,7 +14,23 @@ from continuum_dyn.record import read_log, write_log
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.studies import RampStudy
 from continuum_dyn.views.figures import log_plots
-from statics import Critical, Equilibrium, InputError, Outcome, Scene, follow_path, tension_ramp
+from statics import (
+    Arm,
+    Bending,
+    Critical,
+    DiskLoad,
+    DiskLoads,
+    Equilibrium,
+    InputError,
+    Outcome,
+    Scene,
+    StaticSolver,
+    equilibrium,
+    follow_path,
+    tension_ramp,
+)
+from statics.arc_length import follow
+from statics.ramp import ramp
 
 SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
 
@@ -123,6 +140,54 @@ def test_folds_close_together_are_passed_however_fine_the_ramp(scenario: Scenari
         (Critical.FOLD, 2.634),
     ]
     assert sum(point.jumped for point in tension_ramp(light, tensions)) == 1
+
+
+def column(segments: int) -> Scene:
+    """A column of steel, 3 m, under a dead load of 1 N along it, times a factor."""
+    arm = Arm(1, 3.0, youngs_modulus=2.1e11, second_moment=0.1**4 / 12, disk_mass=0.0, subsegments=segments)
+    return Scene(arm, (Bending(), DiskLoads((DiskLoad(1, (-1.0, 0.0), driven=True),))))
+
+
+def buckling_loads(scene: Scene) -> np.ndarray:
+    """Eigenvalues, N: by bends phi the load's end comes closer by phi G phi / 2, arc by arc."""
+    arm, n = scene.arm, scene.arm.segments
+    length, bending = 3.0 / n, arm.per_disk("youngs_modulus")[0] * arm.per_disk("second_moment")[0]
+    middles = np.tri(n, k=-1) + 0.5 * np.eye(n)
+    return bending / length**2 / np.linalg.eigvalsh(middles.T @ middles + np.eye(n) / 12)[::-1]
+
+
+@pytest.mark.parametrize(("segments", "factor"), [(1, 1e7), (2, 1e8), (16, 3e7), (64, 1e8)])
+def test_column_branches_at_each_eigenvalue_however_many_a_step_passes(segments: int, factor: float) -> None:
+    scene = column(segments)
+    path = follow(StaticSolver(scene), np.array([[0.0], [factor]]))
+    loads = buckling_loads(scene)
+    passed = loads[loads < factor]
+    assert len(passed) >= 1
+    assert [point.critical for point in path.critical] == [Critical.BRANCHING] * len(passed)
+    found = [point.inputs[0] for point in path.critical]
+    np.testing.assert_allclose(found, passed, rtol=1e-5)
+    assert [point.unstable_directions for point in path.critical] == list(range(len(passed)))
+    assert path.outcome is Outcome.COMPLETED
+
+
+def test_plain_ramp_tells_the_first_of_many_branchings() -> None:
+    scene = column(64)
+    _, end = ramp(StaticSolver(scene), np.array([[0.0], [1e8]]))
+    assert end.lost_at is not None
+    assert end.lost_at.critical is Critical.BRANCHING
+    assert end.lost_at.inputs[0] == pytest.approx(buckling_loads(scene)[0], rel=1e-4)
+
+
+@pytest.mark.parametrize("turns", [(0.0, 10.0, 0.0), (0.0, 3.0, 3.0, 1.0, 10.0), (5.0, 0.0, 5.0, 2.0)])
+def test_path_of_a_ramp_that_turns_back_goes_there_and_back(turns: tuple[float, ...]) -> None:
+    """Every point is regular: each is the one equilibrium that a search from straight finds."""
+    scene = rone2012()
+    path = follow_path(scene, turns)
+    assert path.outcome is Outcome.COMPLETED
+    assert path.parameters == list(range(len(turns)))
+    assert [float(point.tension[0]) for point in path.points] == list(turns)
+    alone = [equilibrium(scene, tension).tip for tension in turns]
+    np.testing.assert_allclose([point.tip for point in path.points], alone, atol=1e-11)
 
 
 def test_picture_of_a_path_marks_its_folds(followed: Run, tmp_path: Path) -> None:

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 from continuum_dyn import Scenario, load_scenario, simulate
 from continuum_dyn.scenario.profiles import Constant, Step
 from continuum_dyn.scenario.solver import Solver
-from continuum_dyn.scenario.studies import MotionStudy
-from statics import Arm, Bending, Cable, Cables, Extension, Gravity, Outcome, Scene
+from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, RampStudy
+from statics import Arm, Bending, Cable, Cables, Extension, Gravity, InputError, Outcome, Scene
 from statics.arc_length import follow
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.ramp import ramp
@@ -47,6 +47,23 @@ def test_one_segment_bends_as_its_closed_form_says() -> None:
         return 2.1e11 * 2.011e-14 / 0.02 * phi + tension * (slope * (0.02 - phi * r) - chord * r)
 
     assert found.bend_angle[0] == pytest.approx(brentq(unbalanced, 1e-3, 1.0, xtol=1e-15), rel=1e-10)
+
+
+@pytest.mark.parametrize("displacement", [-1e-3, 0.0, 1e-3])
+def test_equilibrium_study_takes_one_displacement(displacement: float) -> None:
+    """As a ramp of that one number, and as the closed form of one segment."""
+    arm = Arm(1, 0.02, youngs_modulus=2.1e11, second_moment=2.011e-14, cables=(BY_LENGTH,))
+    scene = Scene(arm, (Bending(), Cables()))
+    one = simulate(Scenario(scene, (Constant(displacement),), EquilibriumStudy()))
+    many = simulate(Scenario(scene, ((displacement,),), RampStudy()))
+    assert one.outcome is many.outcome is Outcome.COMPLETED
+    assert one.tip == many.tip == at_rest(scene, displacement).tip
+    assert (one.equilibria[0].tension[0] > 0.0) == (displacement > 0.0)
+
+
+def test_equilibrium_study_refuses_a_displacement_that_changes() -> None:
+    with pytest.raises(InputError, match="one number for each tension, displacement and load factor"):
+        Scenario(driven(BY_LENGTH), (Step(0.0, 1e-3),), EquilibriumStudy())
 
 
 def test_slack_cable_is_none() -> None:

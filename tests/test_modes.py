@@ -25,7 +25,7 @@ from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy
 from continuum_dyn.simulation.integration import inspector, integrate
 from continuum_dyn.views.figures import plots
-from statics import Arm, Bending, Cable, InputError, Scene
+from statics import Arm, Bending, Cable, CableFriction, Cables, Extension, InputError, Scene
 from statics.quantities import QUANTITIES
 
 RETARDATION = 1.2e-3
@@ -279,3 +279,32 @@ def test_picture_shows_the_lowest_six_about_the_arm_at_rest(light: RestModes) ->
     assert len(shown) == 6
     at_rest_line = np.asarray(shown[0].lines[0].get_xydata())
     np.testing.assert_allclose(at_rest_line[-1], 1e3 * np.array(light.rest.tip[:2]), atol=1e-9)
+
+
+def of_disks_with_hardly_any_mass(mass: float, damping: bool, friction: float = 0.0) -> Scenario:
+    cable = Cable("upper", 0.008, friction=friction)
+    core = Arm(4, 0.02, youngs_modulus=2.1e11, area=4e-7, second_moment=2e-14, cables=(cable,))
+    arm = replace(core, disk_mass=mass, disk_inertia=2.4e-8)
+    effects = [Bending(), Extension(), Cables(), Inertia(), RotaryInertia()]
+    effects += [MaterialDamping(1e-3)] if damping else []
+    return at_rest(Scene(arm, [*effects, *([CableFriction()] if friction else [])]), 0.0)
+
+
+@pytest.mark.parametrize("damping", [True, False])
+@pytest.mark.parametrize("mass", [1e-7, 1e-9])
+def test_light_disks_swing_as_their_rotary_inertia_alone_lets_them(mass: float, damping: bool) -> None:
+    """Angles theta of disks on rotary springs EJ / L0 in a row: I theta'' + K theta = 0."""
+    chain = 2.0 * np.eye(4) - np.eye(4, k=1) - np.eye(4, k=-1)
+    chain[3, 3] = 1.0
+    squares = 2.1e11 * 2e-14 / 0.02 / 2.4e-8 * np.linalg.eigvalsh(chain)
+    found = modes_at_rest(of_disks_with_hardly_any_mass(mass, damping))
+    frequencies = [mode.frequency for mode in found.modes[:4]]
+    np.testing.assert_allclose(frequencies, np.sqrt(squares) / (2.0 * np.pi), rtol=0.3e6 * mass)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("damping", [True, False])
+@pytest.mark.parametrize("mass", [1e-20, 1e-60, 1e-100])
+def test_modes_that_rounding_drowns_are_refused(mass: float, damping: bool, friction: float) -> None:
+    with pytest.raises(InputError, match="modes are lost in rounding: rates of the linearized motion reach"):
+        modes_at_rest(of_disks_with_hardly_any_mass(mass, damping, friction))

@@ -217,6 +217,8 @@ def _meshes(motion: Motion, progress: Callable[[str], None]) -> tuple[list[MeshP
         meshed = scenario.with_mesh(subsegments, 1.0)
         statics = StaticSolver(meshed.scene)
         rest, seconds = _timed(lambda solver=statics: solver.solve(tension))
+        if not rest.found:
+            return found, f"no equilibrium was found with {subsegments} segments from disk to disk"
         tips[subsegments] = np.array(rest.tip)
         apart = np.abs(tips[subsegments] - rod)
         limit = None

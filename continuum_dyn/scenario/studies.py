@@ -60,8 +60,11 @@ class EquilibriumStudy(StudyKind):
 
     def check(self, scenario: "Scenario") -> None:
         """Raise ``InputError`` unless every drive is one number."""
-        if not all(isinstance(profile, Constant) for profile in scenario.profiles):
-            raise InputError('an "equilibrium" study takes one number for each tension and load factor.')
+        given = scenario.profiles[: len(scenario.drives) + len(scenario.load_factors)]
+        if not all(isinstance(profile, Constant) for profile in given):
+            raise InputError(
+                'an "equilibrium" study takes one number for each tension, displacement and load factor.'
+            )
 
 
 @dataclass(frozen=True, config=STRICT)

@@ -41,7 +41,6 @@ from statics.passes.search import (
     add_scaled,
     clear,
     copy,
-    is_balanced,
     largest,
     measure,
     pose_pass,
@@ -257,11 +256,7 @@ def find_stable(
         single, turn = measure(change, unit)
         # Cables of given length may catch in a small step.
         if single < AT_REST and not (passes.lengths != 0 and single > ROUNDED and single < FALLING * last):
-            ended = settle(passes, q, negative, unit, arm, work)
-            if ended == UNSTABLE or is_balanced(passes, q, inputs, segments, disks, unit):
-                return ended, iteration
-            pose_pass(passes, q, inputs, segments, disks, chain, scalars)
-            continue
+            return settle(passes, q, negative, unit, arm, work), iteration
         slope, enough = inner(residual, change), potential
         if slope > -ROUNDING * scale:
             enough = potential + scale  # the fall is below rounding: only the limits are checked
