@@ -8,6 +8,9 @@ import typer
 from continuum_dyn.commands.terminal.output import say
 from statics.errors import InputError
 
+RECORDING = ".rrd"
+"""Ending of the names of rerun's recordings."""
+
 
 def play(
     logs: Annotated[
@@ -33,6 +36,12 @@ def play(
     if web and save is not None:
         raise InputError("--web shows the recording and --save keeps it in a file. Give one of them.")
     from continuum_dyn.record import read_log
+    from continuum_dyn.record.reading import is_hdf5
+
+    if save is not None and save.suffix.lower() != RECORDING:
+        raise InputError(f"--save takes a name that ends in {RECORDING}; read: {save.name}.")
+    if save is not None and is_hdf5(save):
+        raise InputError(f"--save {save}: a log is there, and is not replaced. Choose another name.")
     from continuum_dyn.views.playback import recording, viewer
 
     found = [read_log(path) for path in logs]

@@ -97,10 +97,15 @@ def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
     ):  # what Ctrl-C breaks off within the import of a library might come out as anything
         from continuum_dyn.record import read_log
         from continuum_dyn.record.logged_scenario import logged_scenario
+        from continuum_dyn.record.reading import is_hdf5
         from continuum_dyn.scenario_files.reading import load_scenario
 
-    if path.suffix != ".h5":
-        return Job(path, load_scenario(path, overrides), out / f"{path.stem}.h5")
+    missing_log = path.suffix == ".h5" and not path.exists()
+    if not (is_hdf5(path) or missing_log):
+        log = out / f"{path.stem}.h5"
+        if path.resolve() == log.resolve():
+            raise InputError(f"{path}: its log would replace it. Let scenarios end in .toml.")
+        return Job(path, load_scenario(path, overrides), log)
     log = read_log(path)
     return Job(path, logged_scenario(log, overrides), out / f"{path.stem}_again.h5", earlier=log)
 

@@ -16,6 +16,8 @@ from statics.support.interruption import defer_interruption
 
 CHUNK = 512
 """Number of rows in a chunk of a growing dataset."""
+IMAGE_BLOCK = 1 << 22
+"""Steps in which a file that is made in memory grows, bytes."""
 VERSIONS = ("v110", "v110")
 """Oldest and newest HDF5 version of the file: the first that can be read while it is written."""
 TEXT = h5py.string_dtype()
@@ -27,7 +29,7 @@ def whole_file(path: Path) -> Iterator[h5py.File]:
     new = temporary_name(path)
     with defer_interruption():
         try:
-            with h5py.File(new, "w", libver=VERSIONS) as file:
+            with file_on_disk(new) as file:
                 yield file
             move_into_place(new, path)
         except OSError as error:
@@ -35,6 +37,20 @@ def whole_file(path: Path) -> Iterator[h5py.File]:
         finally:
             with suppress(OSError):
                 new.unlink()
+
+
+@contextmanager
+def file_on_disk(new: Path) -> Iterator[h5py.File]:
+    """A new file, made in memory and written at the end. Raises ``OSError`` if it cannot be written.
+
+    HDF5 does not recover from a disk that gets full: it ends the program when it closes the file.
+    """
+    made = {"driver": "core", "backing_store": False, "block_size": IMAGE_BLOCK}
+    with h5py.File(new, "w", libver=VERSIONS, **made) as file:
+        yield file
+        file.flush()
+        image = file.id.get_file_image()
+    new.write_bytes(image)
 
 
 def move_into_place(new: Path, path: Path) -> None:

@@ -13,7 +13,7 @@ from continuum_dyn.record.datasets import reason
 from continuum_dyn.record.heaps import has_damaged_heaps
 from continuum_dyn.record.log import Log
 from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES, Kind
-from continuum_dyn.record.unclosed import is_unclosed, open_unclosed
+from continuum_dyn.record.unclosed import SIGNATURE, is_unclosed, open_unclosed
 from statics.arm import Arm
 from statics.errors import LogError
 from statics.outcome import Outcome
@@ -22,6 +22,15 @@ ARM_NUMBERS = [each.name for each in fields(Arm)]
 """Attributes of the arm that may be numbers; a file may have any others."""
 MAX_SHOWN = 12
 """Largest number of departures from the format that an error lists."""
+
+
+def is_hdf5(path: Path) -> bool:
+    """Whether a file begins as an HDF5 file, whatever its name; False if it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return file.read(len(SIGNATURE)) == SIGNATURE
+    except OSError:
+        return False
 
 
 def read_log(path: Path) -> Log:

@@ -21,6 +21,7 @@ from continuum_dyn.record.datasets import (
     VERSIONS,
     begin_columns,
     check_finite,
+    file_on_disk,
     move_into_place,
     reason,
 )
@@ -99,7 +100,7 @@ class StreamedLog:
     def _create(self, block: "Trajectory") -> None:
         assert self.run is not None
         with self._new() as new:
-            with h5py.File(new, "w", libver=VERSIONS, locking=False) as file:
+            with file_on_disk(new) as file:
                 file.attrs.update(attributes_of(self.run, complete=False))
                 write_scenario(file, self.run.scenario)
                 write_equilibria(file, self.run)
@@ -125,7 +126,9 @@ class StreamedLog:
         with self._new() as new:
             shutil.copyfile(self.part, new)
             with h5py.File(new, "r+", libver=VERSIONS, locking=False) as file:
-                self._append(file, trajectory.after(self.rows))
+                rest = trajectory.after(self.rows)
+                _keep_room(new, file, rest)
+                self._append(file, rest)
                 file["trajectory"].attrs.update(trajectory.counters)
                 del file["equilibria"]
                 write_equilibria(file, run)

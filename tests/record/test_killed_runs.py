@@ -210,3 +210,15 @@ def test_disk_that_is_full_at_first_is_told(run: Run, small_disk: Path) -> None:
         with pytest.raises(LogError, match="No space left on device"):
             sink.add(run.trajectory)  # pyright: ignore[reportArgumentType]
     assert [path.name for path in small_disk.iterdir()] == ["other"]
+
+
+@pytest.mark.parametrize("size", ["300k", "500k"])
+def test_disk_that_is_full_before_a_short_run_is_logged_is_told(small_disk: Path, size: str) -> None:
+    """Not even room for the log, or room for it but not for its recording."""
+    subprocess.run(["mount", "-o", f"remount,size={size}", str(small_disk)], check=True)
+    command = [sys.executable, "-m", "continuum_dyn", "run", str(SCENARIOS / "step_response.toml")]
+    result = subprocess.run([*command, "--out", str(small_disk)], capture_output=True, text=True, check=False)
+    assert result.returncode == 2, result.stderr
+    assert "No space left on device" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert [path.name for path in small_disk.iterdir()] == ([] if size == "300k" else ["step_response.h5"])

@@ -23,7 +23,7 @@ from continuum_dyn.views.playback.measures import measures_of
 from continuum_dyn.views.playback.playback import MOST_FRAMES, Playback, playback_of
 from continuum_dyn.views.playback.plots import plots_of
 from continuum_dyn.views.playback.recording import APPLICATION, send_beside, send_playback, send_rows
-from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, free_ports
+from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, environment, free_ports
 from continuum_dyn.views.rerun_core.stream import Stream
 from statics.errors import LogError
 from statics.support.plain_text import plain_line
@@ -121,7 +121,10 @@ def main() -> None:
     path, since = Path(sys.argv[1]), float(sys.argv[2])
     parent, (port,) = os.getppid(), free_ports(1)
     viewer = subprocess.Popen(
-        [*VIEWER, "--port", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        [*VIEWER, "--port", str(port)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=environment(),
     )
     recording = rr.RecordingStream(APPLICATION)
     recording.connect_grpc(f"rerun+http://{LOOPBACK}:{port}/proxy")

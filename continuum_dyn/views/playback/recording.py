@@ -51,6 +51,15 @@ def save(logs: Sequence[Log], path: Path) -> None:
 def record_logs(logs: Sequence[Log]) -> bytes:
     """The recording's content. Raises ``InputError`` for logs that cannot be shown together."""
     recording = Stream(core.new_recording(APPLICATION, uuid4().hex, False, False))
+    try:
+        return _content(recording, logs)
+    finally:
+        core.disconnect(recording.native)  # rerun keeps what was sent for as long as anything may take it
+        del recording
+        core.flush_and_cleanup_orphaned_recordings()
+
+
+def _content(recording: Stream, logs: Sequence[Log]) -> bytes:
     memory = content(recording)  # its file sink waits for ever on a full disk (0.41)
     core.send_recording_name(
         plain_line(" and ".join(log.title or log.path.stem for log in logs)), recording.native

@@ -1,5 +1,6 @@
 """Rerun's viewer for recordings: in a window of its own, or in a browser on this computer."""
 
+import os
 import socket
 import subprocess
 import sys
@@ -21,8 +22,17 @@ VIEWER = (
 )
 """The viewer of this Python environment, for this computer only. ``-m rerun_cli`` loses its exit status."""
 
+QUIET = {"CI": "1", "TELEMETRY_ENABLED": "false"}
+"""Environment in which rerun sends no statistics of its use: it has no other switch but one for good."""
+
 START_TIME = 20.0
 """Longest time for a server to answer, s."""
+
+
+def environment() -> dict[str, str]:
+    """Environment of rerun's viewer: this program's, in which it sends no statistics."""
+    inherited = {name: value for name, value in os.environ.items() if name != "FORCE_RERUN_ANALYTICS"}
+    return inherited | QUIET
 
 
 def show(logs: Sequence[Log]) -> None:
@@ -87,7 +97,7 @@ def _start(arguments: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
     import psutil
 
     try:
-        viewer = subprocess.Popen([*VIEWER, *arguments], stderr=subprocess.PIPE, text=True)
+        viewer = subprocess.Popen([*VIEWER, *arguments], stderr=subprocess.PIPE, text=True, env=environment())
     except OSError as error:
         raise LogError(f"cannot start the rerun viewer: {error}.") from error
     try:

@@ -85,6 +85,7 @@ class Layout:
             _log(layout, panel, "PanelBlueprint", state=[self.beside])
         _log(layout, "time_panel", "TimePanelBlueprint", state=[COLLAPSED], **self.time)
         core.send_blueprint(content(layout), True, True, recording.native)
+        core.disconnect(layout.native)
 
 
 def _log(layout: Stream, entity: str, kind: str, /, **columns: Any) -> None:
