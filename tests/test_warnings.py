@@ -48,7 +48,7 @@ ODD = {
     "samples too far apart": (STEP, ["study.samples=30"], "Ask for more than the 30 samples"),
     "explicit steps of a stiff arm": (
         STEP,
-        ["solver.method=RK23", "study.duration=0.01", "study.samples=200"],
+        ["solver.method=RK23", "study.duration=1e-3", "study.samples=200"],
         'Try method = "chain"',
     ),
 }
