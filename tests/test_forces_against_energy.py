@@ -35,6 +35,9 @@ SOFT = 2.1e10, 2.1e9
 """Young's moduli of cores so soft that random states have directions of negative stiffness, Pa."""
 
 three_disks_or_five = pytest.mark.parametrize("disks", [3, pytest.param(5, marks=pytest.mark.slow)])
+with_mass_or_stiff = pytest.mark.parametrize(
+    "scene_of", [pytest.param(full_scene, marks=pytest.mark.slow), stiff_scene, heavy_scene]
+)
 any_core = pytest.mark.parametrize("scene_of", [full_scene, stiff_scene, heavy_scene])
 
 
@@ -133,7 +136,7 @@ def test_paper_loads_on_disks_give_the_cables_generalized_force() -> None:
 # ---- stiffness ----
 
 
-@any_core
+@with_mass_or_stiff
 @three_disks_or_five
 def test_newton_step_equals_the_dense_solution(scene_of: Callable[[int], Scene], disks: int) -> None:
     scene = scene_of(disks)
@@ -156,7 +159,7 @@ def soft_states(scene_of: Callable[..., Scene], disks: int) -> Iterator[tuple[St
         yield chain_statics(scene, q, tension_of(scene)), int(np.sum(eigenvalues < 0))
 
 
-@any_core
+@with_mass_or_stiff
 @three_disks_or_five
 def test_negative_pivots_count_the_negative_eigenvalues_of_the_stiffness(
     scene_of: Callable[..., Scene], disks: int

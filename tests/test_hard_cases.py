@@ -41,11 +41,43 @@ SLOW = {
     "whip_through_several_turns",
 }
 """Cases that take seconds, too."""
+PARTS = {"undamped_for_1e5_periods": 10, "profile_of_1e5_rows": 10}
+"""Long cases in which every part is like the others: the tests go through the first of so many, within its
+share of the bounds; ``continuum-dyn hard`` goes through all."""
+
+BY_ITSELF = "sine_above_the_highest_bending_mode"
+"""The case whose second method takes most of the time: the tests hold the first against its own tighter
+solution, and against the second without extension; ``continuum-dyn hard`` runs both."""
+
+
+def claimed_by(case: HardCase, *methods: Method, **changes: Any) -> HardCase:
+    """The case claimed by those alone."""
+    steps = {method: case.expected.steps[method] for method in methods}
+    return replace(case, expected=replace(case.expected, **{"steps": steps, **changes}))
+
+
+def shortened(case: HardCase, parts: int) -> HardCase:
+    """The first of the parts of a case, and its share of the steps and of the energy's trend."""
+    if case.name == BY_ITSELF:
+        return claimed_by(case, "chain")
+    study, expected = case.scenario.require_motion("to be shortened"), case.expected
+    first = replace(study, duration=study.duration / parts)
+    steps = {m: count if m in expected.until else count // parts for m, count in expected.steps.items()}
+    trend = None if expected.energy_trend is None else expected.energy_trend / parts
+    scenario = replace(case.scenario, study=first)
+    return replace(case, scenario=scenario, expected=replace(expected, steps=steps, energy_trend=trend))
+
+
 CASES = [
-    pytest.param(case, id=case.name, marks=pytest.mark.slow if path.stem in SLOW else ())
+    pytest.param(
+        shortened(case, PARTS.get(path.stem, 1)),
+        id=case.name,
+        marks=pytest.mark.slow if path.stem in SLOW or case.name != path.stem else (),
+    )
     for path in sorted(HARD.glob("*.toml"))
     for case in load_cases(path)[: 1 if path.stem in UNUSUAL else None]
 ]
+"""By default as their files have them; the slow ones also with extension, or without it."""
 
 
 def numbers(path: Path) -> list[np.ndarray]:
@@ -102,12 +134,6 @@ def test_the_variant_of_a_case_differs_by_extension_alone() -> None:
 def one_disk() -> HardCase:
     case, _ = load_cases(HARD / "one_disk.toml")
     return claimed_by(case, "chain")
-
-
-def claimed_by(case: HardCase, *methods: Method, **changes: Any) -> HardCase:
-    """The case claimed by those alone."""
-    steps = {method: case.expected.steps[method] for method in methods}
-    return replace(case, expected=replace(case.expected, **{"steps": steps, **changes}))
 
 
 def test_bounds_go_with_tolerance_and_steps_and_the_ledgers_with_the_travel(one_disk: HardCase) -> None:

@@ -74,7 +74,11 @@ def state(q: np.ndarray, u: np.ndarray) -> np.ndarray:
 # ---- the whole arm ----
 
 
-@pytest.mark.parametrize("scene", [laden_scene(1), laden_scene(2), laden_span()], ids=["1", "2", "span"])
+@pytest.mark.parametrize(
+    "scene",
+    [laden_scene(1), laden_scene(2), pytest.param(laden_span(), marks=pytest.mark.slow)],
+    ids=["1", "2", "span"],
+)
 def test_accelerations_and_energies_are_those_of_kanes_method_with_bodies_of_their_own(scene: Scene) -> None:
     arm, kernel, tension = whole_arm.whole_arm(scene), moving_kernel(scene), TENSION[: scene.cables]
     for seed in range(5):

@@ -5,6 +5,7 @@ opened, and no more memory is taken than the file's size warrants.
 """
 
 from collections.abc import Iterator, Mapping
+from math import prod
 from typing import Any
 
 import h5py
@@ -20,24 +21,21 @@ from continuum_dyn.record.log_format import (
     Column,
     Kind,
 )
+from continuum_dyn.record.opened import SMALL, Opened, attribute
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
 
-SMALL = 16_000_000
-"""Largest size of a log's datasets, bytes, if its file is small."""
 MOST_EXPANSION = 100
 """Largest size of a log's datasets over that of its file, which may be compressed, if it is large."""
 LARGEST = 8_000_000_000
 """Largest size of a log's datasets, bytes: more than the study with the most samples stores."""
 MOST_NAMES, LONGEST_NAME = 1000, 1000
 """Largest number of names of cables, and length of one, bytes."""
-PLAIN_FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
-"""Compression and checksums that HDF5 has built in; others would load libraries."""
 
 _SCALARS = {str: "a text", float: "a finite number", int: "a whole number", bool: "true or false"}
 
 
-def departures(file: h5py.File) -> Iterator[str]:
+def departures(file: Opened) -> Iterator[str]:
     """Departures that prevent reading: wrong names, types, shapes and links of required parts.
 
     Nothing else is checked if the format or its version is another one.
@@ -49,7 +47,7 @@ def departures(file: h5py.File) -> Iterator[str]:
     yield from _wrong_attributes(file, ATTRIBUTES, OPTIONAL_ATTRIBUTES)
     yield from _wrong_outcome(file)
     for name in ("tables", "arm"):
-        if file.get(name, getlink=True) is None:
+        if file.group.get(name, getlink=True) is None:
             yield f"group {name} is missing"
     yield from _wrong_tables(file)
     for name, known in GROUPS.items():
@@ -59,25 +57,11 @@ def departures(file: h5py.File) -> Iterator[str]:
     yield from too_large or _wrong_names(file)
 
 
-def _other_format(file: h5py.File) -> Iterator[str]:
-    if attribute(file, "format") != FORMAT:
+def _other_format(file: Opened) -> Iterator[str]:
+    if file.attribute("format") != FORMAT:
         yield "an HDF5 file, but not a log of continuum-dyn"
-    elif attribute(file, "format_version") != FORMAT_VERSION:
-        read = attribute(file, "format_version")
+    elif (read := file.attribute("format_version")) != FORMAT_VERSION:
         yield f"log format {str(read)[:40]}; this program reads format {FORMAT_VERSION}"
-
-
-def attribute(place: h5py.Group | h5py.Dataset, name: str) -> Any:
-    """Read an attribute: a text, a number or a truth value; None if it is missing or of another kind."""
-    if name not in place.attrs:
-        return None
-    kind = place.attrs.get_id(name)
-    if kind.shape != () or h5py.check_ref_dtype(kind.dtype) or kind.get_storage_size() > SMALL:
-        return None
-    value = place.attrs[name]
-    if isinstance(value, np.generic):
-        value = value.item()
-    return value.decode() if isinstance(value, bytes) else value
 
 
 def _is(value: Any, kind: type) -> bool:
@@ -87,15 +71,15 @@ def _is(value: Any, kind: type) -> bool:
 
 
 def _wrong_attributes(
-    place: h5py.Group, needed: Mapping[str, type], optional: Mapping[str, type]
+    place: Opened, needed: Mapping[str, type], optional: Mapping[str, type]
 ) -> Iterator[str]:
     for name, kind in {**needed, **optional}.items():
-        value = attribute(place, name)
-        if name not in place.attrs:
+        value = place.attribute(name)
+        if value is None and name not in place.group.attrs:
             if name in needed:
                 yield f"attribute {name} is missing"
         elif not _is(value, kind):
-            read = _form_of(place.attrs.get_id(name))
+            read = _form_of(place.group.attrs.get_id(name))
             yield f"attribute {name}: {_SCALARS[kind]} is expected; read {read}"
 
 
@@ -103,18 +87,20 @@ def _form_of(attribute_id: h5py.h5a.AttrID) -> str:
     return f"one of type {attribute_id.dtype} and shape {attribute_id.shape}"
 
 
-def _wrong_outcome(file: h5py.File) -> Iterator[str]:
-    outcome = attribute(file, "outcome")
+def _wrong_outcome(file: Opened) -> Iterator[str]:
+    outcome = file.attribute("outcome")
     if isinstance(outcome, str) and outcome not in set(Outcome):
         yield f"attribute outcome: read {outcome[:40]!r}. Allowed: {', '.join(Outcome)}"
 
 
-def _wrong_tables(file: h5py.File) -> Iterator[str]:
-    group, wrong = member(file, "tables", h5py.Group)
+def _wrong_tables(file: Opened) -> Iterator[str]:
+    group, wrong = file.group_of("tables")
     if wrong:
         yield wrong
-    for name in group or ():
-        table, wrong = member(group, name, h5py.Dataset)
+    if group is None:
+        return
+    for name in group.names:
+        table, wrong = group.dataset_of(name)
         if wrong:
             yield wrong
         elif table is not None and (table.dtype != np.uint8 or table.ndim != 1):
@@ -123,36 +109,8 @@ def _wrong_tables(file: h5py.File) -> Iterator[str]:
             yield f"{table.name}: its attribute file, the name of the table, is missing"
 
 
-def member(group: h5py.Group, name: str, kind: type) -> tuple[Any, str]:
-    """The member of a group, and the fault in it; None if it is missing or faulty.
-
-    Links that lead elsewhere are not followed.
-    """
-    link = group.get(name, getlink=True)
-    place = f"{group.name.rstrip('/')}/{name}"
-    if link is None:
-        return None, ""
-    if not isinstance(link, h5py.HardLink):
-        return None, f"{place}: a link that leads elsewhere; it is not followed"
-    if group.get(name, getclass=True) is not kind:
-        return None, f"{place}: a {kind.__name__.lower()} is expected"
-    found = group[name]
-    wrong = _stored_elsewhere(found) if kind is h5py.Dataset else ""
-    return (None if wrong else found), wrong
-
-
-def _stored_elsewhere(dataset: h5py.Dataset) -> str:
-    if dataset.is_virtual or dataset.external:
-        return f"{dataset.name}: its values lie in other files; they are not opened"
-    properties = dataset.id.get_create_plist()
-    filters = {properties.get_filter(number)[0] for number in range(properties.get_nfilters())}
-    return (
-        "" if filters <= PLAIN_FILTERS else f"{dataset.name}: packed with a filter that HDF5 has not built in"
-    )
-
-
-def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Iterator[str]:
-    group, wrong = member(file, name, h5py.Group)
+def _wrong_group(file: Opened, name: str, known: Mapping[str, Column]) -> Iterator[str]:
+    group, wrong = file.group_of(name)
     if wrong:
         yield wrong
     if group is None:
@@ -161,7 +119,7 @@ def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Ite
         yield from _wrong_attributes(group, {}, dict.fromkeys(COUNTERS, int))
     datasets = {}
     for dataset, column in known.items():
-        found, wrong = member(group, dataset, h5py.Dataset)
+        found, wrong = group.dataset_of(dataset)
         if found is not None:
             datasets[dataset] = found
             wrong = _wrong_type(found, column)
@@ -169,14 +127,15 @@ def _wrong_group(file: h5py.File, name: str, known: Mapping[str, Column]) -> Ite
             wrong = f"/{name}/{dataset} is missing"
         if wrong:
             yield wrong
-    yield from _wrong_shapes(group, datasets, known)
+    growing = name == "trajectory" and not file.attribute("complete")
+    yield from _wrong_shapes(datasets, known, growing)
 
 
-def _wrong_arm(file: h5py.File) -> Iterator[str]:
-    arm = member(file, "arm", h5py.Group)[0]
+def _wrong_arm(file: Opened) -> Iterator[str]:
+    arm = file.group_of("arm")[0]
     if arm is None:
         return
-    spacing = {} if "disk_spacing" in arm else {"disk_spacing": float}
+    spacing = {} if "disk_spacing" in arm.group else {"disk_spacing": float}
     for wrong in _wrong_attributes(arm, {"disks": int, "subsegments": int, **spacing}, {}):
         yield f"/arm: {wrong}"
 
@@ -189,10 +148,11 @@ def _wrong_type(dataset: h5py.Dataset, column: Column) -> str:
 
 def kind_of(dataset: h5py.Dataset) -> Kind | None:
     """The type of a dataset's values; None if the format does not know it."""
-    if h5py.check_string_dtype(dataset.dtype) is not None:
+    dtype = dataset.dtype
+    if h5py.check_string_dtype(dtype) is not None:
         return Kind.TEXT
     kinds = {("f", 8): Kind.FLOAT, ("i", 8): Kind.INTEGER, ("b", 1): Kind.TRUTH}
-    return kinds.get((dataset.dtype.kind, dataset.dtype.itemsize))
+    return kinds.get((dtype.kind, dtype.itemsize))
 
 
 def _form(dataset: h5py.Dataset) -> str:
@@ -200,10 +160,9 @@ def _form(dataset: h5py.Dataset) -> str:
 
 
 def _wrong_shapes(
-    group: h5py.Group, datasets: Mapping[str, h5py.Dataset], known: Mapping[str, Column]
+    datasets: Mapping[str, h5py.Dataset], known: Mapping[str, Column], growing: bool
 ) -> Iterator[str]:
     sizes = {name: found.shape[0] for name, found in datasets.items() if found.shape and found.ndim == 1}
-    growing = not attribute(group.file, "complete") and group.name == "/trajectory"
     for name, found in datasets.items():
         dimensions = known[name].dimensions
         missing = [scale for scale in dimensions if scale not in sizes]
@@ -220,26 +179,27 @@ def _wrong_shapes(
             yield f"{found.name}: shape {expected} of {dimensions} is expected; read {_form(found)}"
 
 
-def _too_large(file: h5py.File) -> Iterator[str]:
+def _too_large(file: Opened) -> Iterator[str]:
     """Datasets declared larger than the file can hold, by themselves or by the chunks they are read in."""
-    allowed = min(max(SMALL, MOST_EXPANSION * file.id.get_filesize()), LARGEST)
-    groups = [member(file, name, h5py.Group)[0] for name in ("tables", *GROUPS)]
+    size = file.group.file.id.get_filesize()
+    allowed = min(max(SMALL, MOST_EXPANSION * size), LARGEST)
     declared = 0
-    for group in groups:
-        for name in group or ():
-            found = member(group, name, h5py.Dataset)[0]
+    groups = [file.group_of(name)[0] for name in ("tables", *GROUPS)]
+    for group in filter(None, groups):
+        for name in group.names:
+            found = group.dataset_of(name)[0]
             if found is not None and found.shape is not None:
                 shapes = [found.shape] if found.chunks is None else [found.shape, found.chunks]
-                counts = [int(np.prod(shape, dtype=object)) for shape in shapes]
+                counts = list(map(prod, shapes))
                 declared += (max(counts) if counts[0] else 0) * found.dtype.itemsize
     if declared > allowed:
-        yield f"datasets of {declared:.3g} bytes in a file of {file.id.get_filesize():.3g}: not read"
+        yield f"datasets of {declared:.3g} bytes in a file of {size:.3g}: not read"
 
 
-def _wrong_names(file: h5py.File) -> Iterator[str]:
+def _wrong_names(file: Opened) -> Iterator[str]:
     """Names of cables that are too many or too long; read one by one: all may be one long text."""
-    arm = member(file, "arm", h5py.Group)[0]
-    names = None if arm is None else member(arm, "cable", h5py.Dataset)[0]
+    arm = file.group_of("arm")[0]
+    names = None if arm is None else arm.dataset_of("cable")[0]
     if names is None or kind_of(names) is not Kind.TEXT or names.ndim != 1:
         return
     if names.size > MOST_NAMES:
@@ -252,21 +212,21 @@ def _wrong_names(file: h5py.File) -> Iterator[str]:
             return
 
 
-def oddities(file: h5py.File) -> Iterator[str]:
+def oddities(file: Opened) -> Iterator[str]:
     """Departures that do not prevent reading: units, meanings and scales unlike the format's."""
     for name, known in GROUPS.items():
-        group = member(file, name, h5py.Group)[0]
+        group = file.group_of(name)[0]
         if group is None:
             continue
-        for dataset in group:
+        for dataset in group.names:
             if dataset not in known:
                 yield f"/{name}/{dataset}: not a name of the format"
                 continue
-            found = member(group, dataset, h5py.Dataset)[0]
+            found = group.dataset_of(dataset)[0]
             if found is not None:
                 yield from _odd_words(found, dataset)
-        yield from _odd_scales(group, known)
-    for name in file:
+        yield from _odd_scales(group.group, known)
+    for name in file.names:
         if name not in GROUPS and name != "tables":
             yield f"/{name}: not a name of the format"
 
@@ -304,4 +264,5 @@ def _attachments(scale: h5py.Dataset) -> Iterator[tuple[str, int]]:
         return
     for reference, axis in places:
         if isinstance(reference, h5py.Reference) and reference:
-            yield (scale.file[reference].name or "").rpartition("/")[2], int(axis)
+            name = h5py.h5i.get_name(h5py.h5r.dereference(reference, scale.id)) or b""
+            yield name.decode("utf-8", "surrogateescape").rpartition("/")[2], int(axis)

@@ -8,11 +8,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from continuum_dyn.record.checking import LARGEST, attribute, departures, kind_of, oddities
+from continuum_dyn.record.checking import LARGEST, departures, oddities
 from continuum_dyn.record.datasets import reason
 from continuum_dyn.record.heaps import has_damaged_heaps
 from continuum_dyn.record.log import Log
 from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES, Kind
+from continuum_dyn.record.opened import Opened, attribute
 from continuum_dyn.record.unclosed import SIGNATURE, is_unclosed, open_unclosed
 from statics.arm import Arm
 from statics.errors import LogError
@@ -40,11 +41,12 @@ def read_log(path: Path) -> Log:
     shapes are not the format's; it names them.
     """
     with open_log(path) as file:
-        found = list(departures(file))
+        opened = Opened(file)
+        found = list(departures(opened))
         if found:
             more = [f"and {len(found) - MAX_SHOWN} more"] if len(found) > MAX_SHOWN else []
             raise LogError(f"{path}: " + ".\n  ".join([*found[:MAX_SHOWN], *more]) + ".")
-        log = _read(file, path)
+        log = _read(opened, path)
     not_finite = _not_finite(log)
     if not_finite:
         raise LogError(f"{path}: {not_finite[0]} holds numbers that are not finite.")
@@ -54,11 +56,12 @@ def read_log(path: Path) -> Log:
 def list_departures(path: Path) -> list[str]:
     """List all departures of a file from the format, in words. Raises ``LogError`` like ``open_log``."""
     with open_log(path) as file:
-        found = list(departures(file))
+        opened = Opened(file)
+        found = list(departures(opened))
         if found:
             return found
-        not_finite = [f"{name}: numbers that are not finite" for name in _not_finite(_read(file, path))]
-        return [*oddities(file), *not_finite]
+        not_finite = [f"{name}: numbers that are not finite" for name in _not_finite(_read(opened, path))]
+        return [*oddities(opened), *not_finite]
 
 
 @contextmanager
@@ -82,21 +85,23 @@ def open_log(path: Path) -> Iterator[h5py.File]:
         raise LogError(f"{path}: not a log of continuum-dyn that can be read: {told}.") from error
 
 
-def _read(file: h5py.File, path: Path) -> Log:
+def _read(file: Opened, path: Path) -> Log:
+    """All that is in a file without departures."""
     names = (*ATTRIBUTES, *OPTIONAL_ATTRIBUTES, "format_version")
-    attributes = {name: attribute(file, name) for name in names if name in file.attrs}
-    arm = file["arm"]
+    attributes = {name: value for name in names if (value := file.attribute(name)) is not None}
+    arm, tables, counted = (file.group_of(name)[0] for name in ("arm", "tables", "trajectory"))
+    assert arm is not None
+    assert tables is not None
     arrays = {name: _arrays(file, name) for name in GROUPS}
-    numbers = {name: attribute(arm, name) for name in ARM_NUMBERS if name in arm.attrs}
-    tables = file["tables"].values()
-    counted = file.get("trajectory")
+    numbers = {name: arm.attribute(name) for name in ARM_NUMBERS if name in arm.group.attrs}
+    files = [tables.dataset_of(name)[0] for name in tables.names]
     return Log(
         path=path,
         title=attributes["title"],
         outcome=Outcome(attributes["outcome"]),
         message=attributes["message"],
         scenario=attributes["scenario"],
-        tables={attribute(table, "file"): table[()].tobytes().decode() for table in tables},
+        tables={attribute(table, "file"): table[()].tobytes().decode() for table in files},
         attributes=attributes,
         cables=tuple(arrays["arm"].pop("cable").tolist()),
         arm={name: value for name, value in numbers.items() if isinstance(value, int | float)}
@@ -108,25 +113,27 @@ def _read(file: h5py.File, path: Path) -> Log:
     )
 
 
-def _counters(trajectory: h5py.Group) -> dict[str, int]:
-    return {name: attribute(trajectory, name) for name in COUNTERS if name in trajectory.attrs}
+def _counters(trajectory: Opened) -> dict[str, int]:
+    return {name: value for name in COUNTERS if (value := trajectory.attribute(name)) is not None}
 
 
-def _arrays(file: h5py.File, name: str) -> dict[str, np.ndarray]:
+def _arrays(file: Opened, name: str) -> dict[str, np.ndarray]:
     """The datasets of a group that the format knows; the names of cables are those of the arm."""
-    if name not in file:
+    group = file.group_of(name)[0]
+    if group is None:
         return {}
-    group = file[name]
-    known = [dataset for dataset in GROUPS[name] if dataset in group]
-    return {dataset: _values(group[dataset]) for dataset in known if name == "arm" or dataset != "cable"}
+    return {
+        dataset: _values(found, column.kind)
+        for dataset, column in GROUPS[name].items()
+        if (name == "arm" or dataset != "cable") and (found := group.dataset_of(dataset)[0]) is not None
+    }
 
 
-def _values(dataset: h5py.Dataset) -> np.ndarray:
-    if kind_of(dataset) is Kind.TEXT:
-        return np.array(
-            [name.decode() if isinstance(name, bytes) else name for name in dataset[()]], dtype=object
-        )
-    return dataset[()].astype(dataset.dtype.newbyteorder("="), copy=False)
+def _values(dataset: h5py.Dataset, kind: Kind) -> np.ndarray:
+    values = dataset[()]
+    if kind is Kind.TEXT:
+        return np.array([name.decode() if isinstance(name, bytes) else name for name in values], dtype=object)
+    return values.astype(values.dtype.newbyteorder("="), copy=False)
 
 
 def _whole_samples(columns: dict[str, np.ndarray], complete: bool) -> dict[str, np.ndarray]:

@@ -90,10 +90,16 @@ def test_outcome_without_an_answer_exits_with_1(tmp_path: Path) -> None:
     assert Path(record["log"]).exists()
 
 
-def test_explain_shows_effects_coordinates_and_equations() -> None:
+@pytest.fixture(scope="module")
+def explained() -> str:
+    """What is said of the step response."""
     result = runner.invoke(app, ["explain", STEP])
     assert result.exit_code == 0
-    assert "8 coordinates: bend_angle and elongation of each segment" in result.stdout
+    return result.stdout
+
+
+def test_explain_shows_effects_coordinates_and_equations(explained: str) -> None:
+    assert "8 coordinates: bend_angle and elongation of each segment" in explained
     for words in (
         "gravity",
         "Rone 2012, Eq. 19",
@@ -101,12 +107,12 @@ def test_explain_shows_effects_coordinates_and_equations() -> None:
         "r = sigma_0(h)*(L_0 + e - phi*r_1)",
         "Q_phi",
     ):
-        assert words in result.stdout
-    assert max(map(len, result.stdout.splitlines())) <= 80
+        assert words in explained
+    assert max(map(len, explained.splitlines())) <= 80
 
 
-def test_explain_says_what_each_effect_adds_and_how_the_arm_at_rest_swings() -> None:
-    lines = runner.invoke(app, ["explain", STEP]).stdout.splitlines()
+def test_explain_says_what_each_effect_adds_and_how_the_arm_at_rest_swings(explained: str) -> None:
+    lines = explained.splitlines()
     (added,) = (line.split() for line in lines if line.startswith("  extension") and " to " in line)
     _, coordinate, operated, slowest, _, fastest = added
     assert (coordinate, slowest) == ("elongation", "145")

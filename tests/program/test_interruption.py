@@ -125,8 +125,8 @@ def test_interrupted_motion_is_logged_up_to_there(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "place",
     [
-        "statics.kernels.loading:Family.write",
-        "statics.kernels.loading:_compiled",
+        pytest.param("statics.kernels.loading:Family.write", marks=pytest.mark.slow),
+        pytest.param("statics.kernels.loading:_compiled", marks=pytest.mark.slow),
         "statics.kernels.compiled:_compile",
     ],
 )

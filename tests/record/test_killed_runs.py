@@ -129,11 +129,18 @@ def program(*arguments: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.fixture(scope="module")
+def unbroken(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """The same, never broken off."""
+    return simulate(load_scenario(long_motion(tmp_path_factory.mktemp("unbroken"))))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(2))
-def test_killed_run_is_resumed_to_the_answer_of_an_unbroken_one(number: int, tmp_path: Path) -> None:
+def test_killed_run_is_resumed_to_the_answer_of_an_unbroken_one(
+    number: int, unbroken: Run, tmp_path: Path
+) -> None:
     scenario, part = long_motion(tmp_path), tmp_path / "long.h5.part"
-    unbroken = simulate(load_scenario(scenario))
     process = program("run", str(scenario), "--json", "--out", str(tmp_path))
     while not part.exists():
         assert process.poll() is None

@@ -23,14 +23,14 @@ from statics.quantities import QUANTITIES
 jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is not installed: pip install jsonschema")
 
 SCHEMA = json_schema()
+VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 GOOD = (SCENARIOS / "step_response.toml").read_text()
 EVERY = sorted(SCENARIOS.rglob("*.toml"))
 
 
 def complaints(content: Any) -> list[str]:
     """What the schema has against a file's content."""
-    validator = jsonschema.Draft202012Validator(SCHEMA)
-    return [f"{error.json_path}: {error.message}" for error in validator.iter_errors(content)]
+    return [f"{error.json_path}: {error.message}" for error in VALIDATOR.iter_errors(content)]
 
 
 def keys() -> Iterator[tuple[str, str, dict[str, Any]]]:
@@ -116,7 +116,7 @@ def test_what_loads_is_valid_whatever_it_is(mutants: int, tmp_path: Path) -> Non
             load_scenario(path)
         except InputError:
             refused += 1
-            marked += bool(complaints(content))
+            marked += not VALIDATOR.is_valid(content)
         else:
             loaded += 1
             assert not complaints(content), content
