@@ -23,6 +23,7 @@ INPUTS = ()
 CONSERVATIVE = True
 SEGMENT_COLUMNS = ()
 DISK_COLUMNS = ()
+CHAIN_COLUMNS = ()
 WIDTHS = {{'chain': 0}}
 PASSES = {{'times': ('outward', ('slowing',), ('largest',), ())}}
 

@@ -13,7 +13,7 @@ from statics import Arm, Bending, Critical, Gravity, Scene, StaticSolver
 
 GREENHILL = 7.8373
 """Critical weight per length q of an upright column, q L^3 / EJ (Greenhill 1881)."""
-BUCKLING = Path(__file__).parents[1] / "scenarios" / "self_weight_buckling.toml"
+BUCKLING = Path(__file__).parents[2] / "scenarios" / "self_weight_buckling.toml"
 
 
 def upright(disks: int, load: float) -> StaticSolver:

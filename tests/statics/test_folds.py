@@ -32,7 +32,7 @@ from statics import (
 from statics.arc_length import follow
 from statics.ramp import ramp
 
-SNAP = Path(__file__).parents[1] / "scenarios" / "snap_through.toml"
+SNAP = Path(__file__).parents[2] / "scenarios" / "snap_through.toml"
 
 
 @pytest.fixture(scope="module")

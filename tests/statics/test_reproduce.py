@@ -299,7 +299,7 @@ def test_picture_shows_every_tension_by_every_law(found: Rone2012) -> None:
 
 
 def test_documentation_names_an_existing_place_and_test_for_each_of_25_equations() -> None:
-    root = Path(__file__).parents[1]
+    root = Path(__file__).parents[2]
     lines = (root / "docs" / "theory" / "rone2012.md").read_text().splitlines()
     rows = [line.split("|")[1:-1] for line in lines if re.match(r"\| \d+ \|", line)]
     assert [int(row[0]) for row in rows] == list(range(1, 26))

@@ -21,7 +21,7 @@ from statics.kernels.slots import SCALARS, SLOTS
 from statics.passes.rest_passes import REST
 from statics.scene import Scene
 
-assert Path(lower.__code__.co_filename).parents[2] == Path(__file__).parents[1]
+assert Path(lower.__code__.co_filename).parents[2] == Path(__file__).parents[2]
 
 N = 3
 NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=2 * N, max_size=2 * N)
@@ -156,7 +156,7 @@ class Steps:
         )
         self.text = (
             f"import math\n\nINPUTS = ('tension',)\nCONSERVATIVE = True\nSEGMENT_COLUMNS = ()\n"
-            f"DISK_COLUMNS = ()\nWIDTHS = {{'q': 2, 'chain': {width}}}\n"
+            f"DISK_COLUMNS = ()\nCHAIN_COLUMNS = ()\nWIDTHS = {{'q': 2, 'chain': {width}}}\n"
             f"PASSES = {{'go': {(direction, *list(vars(self.signature).values())[1:])!r}}}\n{functions}\n"
             "def go_start(inputs, segments, chain):\n    tension = inputs[0]\n    return 0.5*tension, 1.5\n\n"
             "def go_step(i, carried, given, q, inputs, chain):\n    largest, clearance = carried\n"

@@ -17,7 +17,7 @@ from statics.arc_length import follow
 from statics.equilibria import Equilibrium, StaticSolver
 from statics.ramp import ramp
 
-SCENARIOS = Path(__file__).parents[1] / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 STIFFNESS = 2e4
 
 

@@ -14,7 +14,7 @@ from continuum_dyn.scenario.profiles import Profile, Sine, SmoothRamp, Step
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import Arm, Bending, Cable, CableFriction, Cables, Extension, Gravity, Outcome, Scene
 
-SCENARIOS = Path(__file__).parents[1] / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 WITHIN = 30.0
 """Largest error of the tip, in tolerances of a step."""
 MORE_STEPS = 3.0

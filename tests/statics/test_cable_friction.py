@@ -30,7 +30,7 @@ from statics.equilibria import Equilibrium, Slip, StaticSolver
 from statics.passes.rest_passes import REST
 from statics.ramp import ramp
 
-SCENARIOS = Path(__file__).parents[1] / "scenarios"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FRICTION = 0.3
 
 
