@@ -4,11 +4,15 @@ import dataclasses
 from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import overload
 
 import numpy as np
 
 from continuum_dyn.scenario.profiles import Piecewise
+from continuum_dyn.scenario.rates import piece_array
 
+BLOCK = 1 << 16
+"""Number of intervals that are compared at a time."""
 ROUNDING = 1e-12
 """Largest gap between two pieces where they meet that counts as none, in parts of their values."""
 
@@ -28,45 +32,89 @@ class Interval:
         return value + slope * since + amplitude * np.sin(frequency * since + phase)
 
 
-def cut_into_intervals(profiles: Sequence[Piecewise], duration: float) -> list[Interval]:
+class Intervals(Sequence[Interval]):
+    """Consecutive intervals between ``edges`` (s), each made when it is asked for: they may be a million.
+
+    ``pieces`` are each profile's, shape (its pieces, 6); ``active`` their numbers in each interval, shape
+    (profiles, intervals).
+    """
+
+    def __init__(self, edges: np.ndarray, pieces: Sequence[np.ndarray], active: np.ndarray) -> None:
+        self.edges, self.pieces, self.active = edges, pieces, active
+
+    def __len__(self) -> int:
+        return len(self.edges) - 1
+
+    @overload
+    def __getitem__(self, index: int) -> Interval: ...
+    @overload
+    def __getitem__(self, index: slice) -> "Intervals": ...
+    def __getitem__(self, index: int | slice) -> "Interval | Intervals":
+        if isinstance(index, slice):
+            first, last, _ = index.indices(len(self))
+            return Intervals(self.edges[first : last + 1], self.pieces, self.active[:, first:last])
+        number = range(len(self))[index]
+        rows = [pieces[row] for pieces, row in zip(self.pieces, self.active[:, number], strict=True)]
+        start, end = (float(edge) for edge in self.edges[number : number + 2])
+        return Interval(start, end, np.array(rows).reshape(len(self.pieces), 6))
+
+    @classmethod
+    def of(cls, interval: Interval) -> "Intervals":
+        """A single interval."""
+        active = np.zeros((len(interval.pieces), 1), dtype=int)
+        return cls(np.array([interval.start, interval.end]), list(interval.pieces[:, None]), active)
+
+    def after(self, time: float) -> "Intervals":
+        """The intervals after a time (s), the first of them cut there."""
+        left = self[int(np.searchsorted(self.edges[1:], time, side="right")) :]
+        if not left:
+            return left
+        start = max(float(left.edges[0]), time)
+        return Intervals(np.concatenate([[start], left.edges[1:]]), left.pieces, left.active)
+
+    def breaks(self) -> np.ndarray:
+        """Numbers of the intervals at whose start an input jumps, or a wave sets in."""
+        numbers = np.arange(1, len(self))
+        blocks = np.split(numbers, range(BLOCK, len(numbers), BLOCK))
+        return np.concatenate([block[self._breaks_at(block)] for block in blocks])
+
+    def _breaks_at(self, numbers: np.ndarray) -> np.ndarray:
+        found = np.zeros(len(numbers), dtype=bool)
+        time = self.edges[numbers]
+        for pieces, active in zip(self.pieces, self.active, strict=True):
+            before, after = pieces[active[numbers - 1]], pieces[active[numbers]]
+            last, first = _values(before, time), _values(after, time)
+            near = np.abs(first - last) <= ROUNDING * (np.abs(last) + np.abs(first))
+            found |= ~near | ((before != after).any(axis=1) & (after[:, 3] != 0.0))
+        return found
+
+
+def _values(pieces: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Value of each piece at its time."""
+    start, value, slope, amplitude, frequency, phase = pieces.T
+    since = time - start
+    return value + slope * since + amplitude * np.sin(frequency * since + phase)
+
+
+def cut_into_intervals(profiles: Sequence[Piecewise], duration: float) -> Intervals:
     """Cut the time from 0 to ``duration`` (s) at every corner of any profile."""
-    pieces = [profile.pieces() for profile in profiles]
-    corners = {piece[0] for rows in pieces for piece in rows if 0 < piece[0] < duration}
-    edges = [0.0, *sorted(corners), duration]
-    starts = [np.array([row[0] for row in rows]) for rows in pieces]
-    result = []
-    for start, end in pairwise(edges):
-        active = [
-            rows[max(int(np.searchsorted(begin, start, side="right")) - 1, 0)]
-            for rows, begin in zip(pieces, starts, strict=True)
-        ]
-        result.append(Interval(start, end, np.array(active).reshape(len(profiles), 6)))
-    return result
+    pieces = [piece_array(profile) for profile in profiles]
+    starts = [rows[:, 0] for rows in pieces]
+    corners = np.unique(np.concatenate([np.empty(0), *starts]))
+    edges = np.concatenate([[0.0], corners[(corners > 0.0) & (corners < duration)], [duration]])
+    active = [np.maximum(np.searchsorted(begin, edges[:-1], side="right") - 1, 0) for begin in starts]
+    return Intervals(edges, pieces, np.array(active, dtype=int).reshape(len(profiles), len(edges) - 1))
 
 
-def intervals_after(intervals: Sequence[Interval], time: float) -> list[Interval]:
+def intervals_after(intervals: Intervals, time: float) -> Intervals:
     """The intervals after a time (s), the first of them cut there."""
-    left = [interval for interval in intervals if interval.end > time]
-    return [dataclasses.replace(interval, start=max(interval.start, time)) for interval in left]
+    return intervals.after(time)
 
 
-def join_intervals(intervals: Sequence[Interval]) -> list[list[Interval]]:
+def join_intervals(intervals: Intervals) -> list[Intervals]:
     """Group consecutive intervals between which no input jumps and no wave sets in."""
-    groups = [[intervals[0]]]
-    for before, interval in pairwise(intervals):
-        if _continues(before, interval):
-            groups[-1].append(interval)
-        else:
-            groups.append([interval])
-    return groups
-
-
-def _continues(before: Interval, interval: Interval) -> bool:
-    """Whether no input jumps, and no wave sets in, from one interval to the next."""
-    last, first = (each.inputs(np.array([interval.start]))[0] for each in (before, interval))
-    sets_in = (interval.pieces[:, 3] != 0.0) & (interval.pieces != before.pieces).any(axis=1)
-    near = np.abs(first - last) <= ROUNDING * (np.abs(last) + np.abs(first))
-    return not sets_in.any() and bool(near.all())
+    edges = [0, *intervals.breaks().tolist(), len(intervals)]
+    return [intervals[first:last] for first, last in pairwise(edges)]
 
 
 def inputs_at(intervals: Sequence[Interval], time: np.ndarray) -> np.ndarray:

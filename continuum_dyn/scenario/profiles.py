@@ -7,7 +7,6 @@ A piece is a row (start, value, slope, amplitude, angular frequency, phase) and 
 from its start to the next one's, so its derivative is a piece, too. At a jump the later piece counts.
 """
 
-from itertools import pairwise
 from math import pi, sin
 from typing import Annotated, Literal, Protocol
 
@@ -170,15 +169,19 @@ class Table:
     def __post_init__(self) -> None:
         if len(self.time) != len(self.value):
             raise InputError(f"{len(self.time)} times, but {len(self.value)} values")
-        for row, (earlier, later) in enumerate(pairwise(self.time), start=2):
-            if later <= earlier:
-                raise InputError(
-                    f"row {row}: time {later:g} s does not come after {earlier:g} s; times must increase"
-                )
-            if later - earlier < TIME_RESOLUTION:
-                raise InputError(
-                    f"row {row}: {later - earlier:g} s after the row before; at least {TIME_RESOLUTION:g} s"
-                )
+        steps = np.diff(self.time)
+        wrong = np.flatnonzero(steps < TIME_RESOLUTION)
+        if not wrong.size:
+            return
+        row = int(wrong[0]) + 2
+        earlier, later = self.time[row - 2 : row]
+        if later <= earlier:
+            raise InputError(
+                f"row {row}: time {later:g} s does not come after {earlier:g} s; times must increase"
+            )
+        raise InputError(
+            f"row {row}: {later - earlier:g} s after the row before; at least {TIME_RESOLUTION:g} s"
+        )
 
     @property
     def initial(self) -> float:
@@ -187,12 +190,16 @@ class Table:
 
     def pieces(self) -> list[Piece]:
         """One piece before the first row, one from each row to the next, one after the last."""
-        rows = list(zip(self.time, self.value, strict=True))
-        between = [
-            straight(t, value, (later[1] - value) / (later[0] - t)) for (t, value), later in pairwise(rows)
-        ]
-        first, last = (min(0.0, self.time[0]), self.value[0]), rows[-1]
-        return [straight(*first), *between, straight(*last)]
+        return [tuple(row) for row in self.piece_array().tolist()]
+
+    def piece_array(self) -> np.ndarray:
+        """The pieces, shape (rows + 1, 6)."""
+        time, value = np.array(self.time), np.array(self.value)
+        rows = np.zeros((len(time) + 1, 6))
+        rows[0, :2] = min(0.0, self.time[0]), self.value[0]
+        rows[1:, 0], rows[1:, 1] = time, value
+        rows[1:-1, 2] = np.diff(value) / np.diff(time)
+        return rows
 
 
 def lower_bound(profile: "Profile") -> float:

@@ -4,7 +4,9 @@ import dataclasses
 from itertools import pairwise
 from math import inf, pi, sin
 
-from continuum_dyn.scenario.profiles import Piece, Piecewise, Profile, Sine, straight
+import numpy as np
+
+from continuum_dyn.scenario.profiles import Piece, Piecewise, Profile, Sine, Table, straight
 from statics.errors import InputError
 
 JUMP, TURN = 1e-12, 1e-4
@@ -30,6 +32,21 @@ def derivative(piece: Piece) -> Piece:
     """The piece's time derivative: a wave's is another one, a quarter of a period ahead."""
     start, _, slope, amplitude, frequency, phase = piece
     return start, slope, 0.0, amplitude * frequency, frequency, phase + pi / 2
+
+
+def piece_array(profile: Piecewise) -> np.ndarray:
+    """The profile's pieces, shape (pieces, 6)."""
+    if isinstance(profile, Rate):
+        _, value, slope, amplitude, frequency, phase = range(6)
+        found = piece_array(profile.of)
+        rows = found.copy()
+        rows[:, value], rows[:, slope] = found[:, slope], 0.0
+        rows[:, amplitude] *= found[:, frequency]
+        rows[:, phase] += pi / 2
+        return rows
+    if isinstance(profile, Table):
+        return profile.piece_array()
+    return np.array(profile.pieces(), dtype=float).reshape(-1, 6)
 
 
 def check_smooth(profile: Profile, name: str, unit: str) -> None:

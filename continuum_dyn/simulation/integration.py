@@ -16,7 +16,7 @@ from continuum_dyn.integrators import METHODS, Budget, Monitor, check
 from continuum_dyn.integrators.methods import drive_frequency
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Interval, inputs_at, join_intervals
+from continuum_dyn.scenario.intervals import Interval, Intervals, inputs_at, join_intervals
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
@@ -32,7 +32,7 @@ PART_OF_PERIOD = 1 / 20
 """Default step of a method with equal steps, in the shortest period of the arm or of its drive."""
 
 
-def with_step(dynamics: Dynamics, solver: Solver, intervals: list[Interval], y: np.ndarray) -> Solver:
+def with_step(dynamics: Dynamics, solver: Solver, intervals: Intervals, y: np.ndarray) -> Solver:
     """The solver's settings, with the default step of its method from rest at ``y`` if it takes one."""
     if not solver.has_fixed_step or solver.step is not None:
         return solver
@@ -50,7 +50,7 @@ def warm_up(dynamics: Dynamics, solver: Solver, interval: Interval) -> None:
     dynamics.clearance(y)
     if method.on_chain:
         unwatched = Monitor(inspect=lambda _t, _y: None, budget=Budget(steps=1))
-        integrate(dynamics, [brief], np.array([brief.start, brief.end]), y, solver, unwatched)
+        integrate(dynamics, Intervals.of(brief), np.array([brief.start, brief.end]), y, solver, unwatched)
         return
     dynamics.rate(interval.start, y, interval)
     dynamics.observe(y[None, :], interval.inputs(np.array([interval.start])))
@@ -88,7 +88,7 @@ def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome
 
 def integrate(
     dynamics: Dynamics,
-    intervals: list[Interval],
+    intervals: Intervals,
     samples: np.ndarray,
     y: np.ndarray,
     solver: Solver,
@@ -117,7 +117,7 @@ def integrate(
             if before is not None:
                 add_jump(dynamics, before, joined[0], monitor)
             before = joined[-1]
-            side = "right" if before is intervals[-1] else "left"
+            side = "right" if before.end == intervals[-1].end else "left"
             until = int(np.searchsorted(samples, before.end, side=side))
             stepper = _solve(dynamics, solver, joined, samples[done:until], monitor, gathered)
             counters.update(_count_work(stepper, dynamics, solver))
@@ -160,20 +160,20 @@ def _count_work(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, i
     }
 
 
-def _group(dynamics: Dynamics, solver: Solver, intervals: list[Interval]) -> list[list[Interval]]:
+def _group(dynamics: Dynamics, solver: Solver, intervals: Intervals) -> Sequence[Intervals]:
     """The intervals in groups that one solver may cross: without a jump of accelerations between them.
 
     If nodes carry no mass, a corner of the forces is such a jump.
     """
     if not METHODS[solver.method].crosses_corners or dynamics.scene.arm.massless_nodes:
-        return [[interval] for interval in intervals]
+        return [intervals[number : number + 1] for number in range(len(intervals))]
     return join_intervals(intervals)
 
 
 def _solve(
     dynamics: Dynamics,
     solver: Solver,
-    joined: list[Interval],
+    joined: Intervals,
     at: np.ndarray,
     monitor: Monitor,
     gathered: Samples,

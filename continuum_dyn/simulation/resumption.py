@@ -7,7 +7,7 @@ import numpy as np
 
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Interval, inputs_at, intervals_after
+from continuum_dyn.scenario.intervals import Intervals, inputs_at, intervals_after
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import integrate
 from continuum_dyn.simulation.motion import Motion
@@ -28,7 +28,7 @@ class Resumption:
     counters: Mapping[str, int]
     columns: Mapping[str, np.ndarray]
 
-    def states(self, dynamics: Dynamics, intervals: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
+    def states(self, dynamics: Dynamics, intervals: Intervals) -> tuple[np.ndarray, np.ndarray]:
         """States (samples, size) and inputs (samples, inputs) of the samples.
 
         If a cable's displacement jumps just after the last of them, the energy that the jump adds to its

@@ -21,7 +21,7 @@ from continuum_dyn.modes import Mode, modes
 from continuum_dyn.passes.accelerations import acceleration
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.scenario.intervals import Interval, cut_into_intervals
+from continuum_dyn.scenario.intervals import Interval, Intervals, cut_into_intervals
 from continuum_dyn.scenario.profiles import Constant, Piecewise, Profile, Ramp, Sine, SmoothRamp, Step, Table
 from continuum_dyn.scenario.rates import Rate, check_smooth
 from continuum_dyn.scenario.solver import Solver
@@ -54,13 +54,13 @@ def mounted(scenario: Scenario, **changes: Any) -> Scene:
     return Scene(replace(scenario.scene.arm, **changes), scenario.scene.effects)
 
 
-def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> list[Interval]:
+def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> Intervals:
     rates = [Rate(profile) for profile in (x, y, angle)]
     profiles: list[Piecewise] = [x, y, angle, *rates, *map(Rate, rates)]
     return cut_into_intervals(profiles, duration)
 
 
-def moved(scene: Scene, stretches: list[Interval], solver: Solver, samples: int = 21) -> Trajectory:
+def moved(scene: Scene, stretches: Intervals, solver: Solver, samples: int = 21) -> Trajectory:
     dynamics = Dynamics(scene)
     times = np.linspace(0.0, stretches[-1].end, samples)
     start = dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs)))

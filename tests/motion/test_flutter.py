@@ -151,9 +151,9 @@ def test_flutter_grows_in_the_motion_at_the_rate_and_frequency_of_its_mode(tmp_p
     dynamics, periods = Dynamics(found.scenario.scene), 8
     samples = np.linspace(0.0, periods / mode.frequency, 200 * periods + 1)
     start = dynamics.state(found.rest.coordinates + 1e-7 * mode.coordinates)
-    (still,) = cut_into_intervals((Constant(1.0),), float(samples[-1]))
+    still = cut_into_intervals((Constant(1.0),), float(samples[-1]))
     monitor = Monitor(inspect=inspector(dynamics))
-    moved = integrate(dynamics, [still], samples, start, Solver("chain", rtol=1e-12, atol=1e-15), monitor)
+    moved = integrate(dynamics, still, samples, start, Solver("chain", rtol=1e-12, atol=1e-15), monitor)
     y = moved.disk_y[:, -1] - found.rest.tip[1]
     before = np.flatnonzero(np.diff(np.sign(y)) != 0)
     crossings = samples[before] - y[before] * np.diff(samples)[before] / (y[before + 1] - y[before])
