@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numba import njit
+from numba import njit  # pyright: ignore[reportMissingImports]: a peer's, see requirements.txt
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, dynamicsymbols, inertia
