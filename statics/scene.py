@@ -196,11 +196,15 @@ class Scene:
         known |= {"load_factor": factor if self.driven_loads else None}
         return known | self._cables_driven_by(drives, (x, y, theta))
 
+    @cached_property
+    def _cable_rest_lengths(self) -> tuple[float, ...]:
+        return tuple(map(self.arm.cable_rest_length, self.arm.cables[: self.cables]))
+
     def _cables_driven_by(self, drives: np.ndarray, poses: Poses) -> dict[str, np.ndarray]:
         """Tension at the base and displacement of every cable, one of which is given."""
         tension, displacement = drives.copy(), drives.copy()
         for number, cable in enumerate(self.arm.cables[: self.cables]):
-            drawn_in = self.arm.cable_rest_length(cable) - cable_lengths(cable, poses).sum(axis=-1)
+            drawn_in = self._cable_rest_lengths[number] - cable_lengths(cable, poses).sum(axis=-1)
             if cable.cable_stiffness is None:
                 displacement[..., number] = drawn_in
             else:
