@@ -335,7 +335,7 @@ class StaticSolver:
                 self.segments[:, column] = values
 
     def rests(self, near: Equilibrium) -> list[Equilibrium]:
-        """Where the arm may rest under an equilibrium's inputs, if that one is found: there.
+        """Equilibria between which the arm may rest under the inputs of one that was found: that one alone.
 
         Cables that rub may leave it anywhere on the way between the branch of cables drawn in and that of
         cables let out, if there are both; the equilibrium lies on it.

@@ -103,7 +103,7 @@ def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
 
 
 def _place_of_rest(log: Log) -> np.ndarray:
-    """Where the run says that the tip rests, x and y, m: with friction, beside its last equilibrium."""
+    """The tip's place of rest as the run tells it, x and y, m: with friction, beside its last equilibrium."""
     if "rest_x" in log.attributes:
         return np.array([log.attributes["rest_x"], log.attributes["rest_y"]])
     return np.array([log.equilibria[name][-1, -1] for name in ("disk_x", "disk_y")])

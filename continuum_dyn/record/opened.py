@@ -24,7 +24,7 @@ class Opened:
 
     @cached_property
     def names(self) -> list[str]:
-        """Of its members."""
+        """Names of its members."""
         return list(self.group)
 
     def group_of(self, name: str) -> tuple["Opened | None", str]:

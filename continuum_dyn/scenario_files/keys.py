@@ -90,7 +90,7 @@ def _reference(key: dict[str, Any]) -> str:
 
 
 def _values(key: dict[str, Any], definitions: dict[str, Any]) -> str:
-    """What a key may be, in words."""
+    """The values that a key may have, in words."""
     choices = key.get("oneOf") or key.get("anyOf")
     if choices and any(_is_profile(choice, definitions) for choice in choices):
         plain = [choice for choice in choices if not _is_profile(choice, definitions)]

@@ -162,7 +162,7 @@ class _Code:
 
 
 def _layout(kinds: list[str]) -> struct.Struct:
-    """How cells of these kinds lie in memory."""
+    """The layout in memory of cells of these kinds."""
     return struct.Struct("".join(FORMATS[kind] for kind in kinds))
 
 

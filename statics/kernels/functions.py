@@ -411,7 +411,7 @@ class _Code:
         raise self.refusal(node)
 
     def known(self, node: ast.expr) -> Any:
-        """What a constant, a name, or one of a module's, stands for outside of the function; else None."""
+        """The value that a constant, a name or a module's name has outside of the function; else None."""
         match node:
             case ast.Constant(value=value):
                 return value
@@ -447,7 +447,7 @@ class _Code:
         return viewed
 
     def view(self, array: Value, node: ast.Subscript) -> Value:
-        """What is left of an array after indices, and one slice at their end."""
+        """The part of an array at some indices, and one slice at their end."""
         indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
         if not isinstance(array.kind, ArrayKind) or len(indices) > array.kind.axes:
             raise self.refusal(node)
