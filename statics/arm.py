@@ -64,7 +64,7 @@ class Cable:
     def holes(self, disks: int) -> np.ndarray:
         """Offsets of its holes in the base and in each disk, shape (disks + 1,), m; the last one goes on."""
         given = np.atleast_1d(np.asarray(self.hole_offset, dtype=float))
-        return np.pad(given, (0, max(0, disks + 1 - given.size)), mode="edge")
+        return given[np.minimum(np.arange(max(disks + 1, given.size)), given.size - 1)]
 
 
 class CableKind(NamedTuple):

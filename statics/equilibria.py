@@ -237,7 +237,7 @@ class StaticSolver:
             ended, more = self._find(q, inputs, MAX_ITERATIONS)
             iterations += more
             found = self.examine(q, inputs, ended, iterations)
-        return replace(found, left=tuple(left))
+        return replace(found, left=tuple(left)) if left else found
 
     def _stick(self, start: np.ndarray, inputs: np.ndarray, *, exactly: bool) -> Equilibrium:
         """The equilibrium of cables that rub, from where they were: they stick, or slip from there.
@@ -282,16 +282,14 @@ class StaticSolver:
         arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         examine = newton.examine_stability if self.kernel.conservative else pseudo_transient.examine_balance
-        elastic, gravity, residual, negative = examine(
-            self.kernel.passes, q, inputs, self.segments, self.disks, pose
+        elastic, gravity, residual, negative, balanced = examine(
+            self.kernel.passes, q, inputs, self.segments, self.disks, arm.rest_length, pose
         )
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         driven = self.scene.driven_by(inputs, disk_x, disk_y, disk_theta)
-        numbers = (q, pose, driven["tension"], driven["cable_displacement"], [elastic, gravity, residual])
-        if not all(np.isfinite(values).all() for values in numbers) or (
-            ended in _FOUND and not self._is_balanced(q, inputs)
-        ):
+        numbers = (q, pose, driven["tension"], driven["cable_displacement"], (elastic, gravity, residual))
+        if (ended in _FOUND and not balanced) or not np.isfinite(np.concatenate(numbers, axis=None)).all():
             ended = search.NOT_FOUND
         return Equilibrium(
             outcome=_outcome(ended, negative),
@@ -309,11 +307,6 @@ class StaticSolver:
             iterations=iterations,
             residual=residual,
         )
-
-    def _is_balanced(self, q: np.ndarray, inputs: np.ndarray) -> bool:
-        """Whether the unbalanced forces are small in units of the forces that meet there."""
-        numbers = (inputs, self.segments, self.disks, self.scene.arm.rest_length)
-        return search.is_balanced(self.kernel.passes, q, *numbers)
 
     def _remember(self, before: "Equilibrium | Slip") -> None:
         """Put where the cables slip from into the table."""
