@@ -1,4 +1,4 @@
-"""``continuum-dyn run``: answer scenarios and log them."""
+"""``continuum-dyn run``: simulate scenarios and log them."""
 
 import json
 import time
@@ -59,13 +59,13 @@ def run(
     overrides: Overrides = None,
     out: Folder = Path("logs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
-    live: Annotated[bool, typer.Option("--live", help="Show each in rerun while it runs.")] = False,
+    live: Annotated[bool, typer.Option("--live", help="Show each run in rerun as it goes.")] = False,
 ) -> None:
     """Simulate scenarios and log them.
 
-    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. The scenario of a log is run again, into
-    DIR/NAME_again.h5, and both are compared. Exit status: 0 answered ("not settled" is an answer), 1 not
-    answered (no stable equilibrium, geometric limit, diverged, budget exceeded) or not the same as before,
+    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. For a log, its scenario is run again,
+    into DIR/NAME_again.h5, and both are compared. Exit status: 0 answered ("not settled" is an answer), 1 not
+    answered (no stable equilibrium, geometric limit, diverged, budget exceeded) or different from the log,
     2 bad input, 130 interrupted.
     """
     jobs = _load(files, overrides or (), out)
