@@ -15,7 +15,7 @@ from statics.outcome import Outcome
 from statics.scene import Scene
 
 MOST_COORDINATES = 400
-"""Most coordinates of an arm whose modes are asked for: they are all found at once, in some seconds."""
+"""Largest number of coordinates for modes: all are computed together, in some seconds."""
 FEW_COORDINATES = 64
 """Coordinates up to which rates are found for a table, where each effect left out is another structure."""
 MOST_DENSE = 128
@@ -194,7 +194,7 @@ def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]
 
 
 def _free(accelerations: np.ndarray, scales: np.ndarray) -> list[_Motion]:
-    """Modes of what rates do not change, from d(acceleration)/dq: its eigenvalues are squares of rates.
+    """Modes of an undamped scene, from d(acceleration)/dq: its eigenvalues are squares of rates.
 
     One below zero swings, one above diverges. A pair of conjugate ones, which only loads without a potential
     can bring about, flutters: it swings twice, once growing and once dying away.

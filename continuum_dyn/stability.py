@@ -1,4 +1,4 @@
-"""Stability where no energy tells: whether small motions about an equilibrium grow.
+"""Stability of equilibria without a potential: whether small motions about them grow.
 
 Loads without a potential can make an arm flutter, which its stiffness alone does not show (Beck 1952, Bolotin
 1963). So the eigenvalues of the linearized motion decide.

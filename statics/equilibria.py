@@ -25,11 +25,11 @@ MAX_ITERATIONS = 200
 MOST_STICKING = 100
 """Largest number of iterations of a search for cables that stick."""
 SHORTEST_STEP = 1 / 8
-"""Shortest step from the inputs before to those asked, over the whole, of such a search in steps."""
+"""Shortest step of such a search from the inputs before to the requested ones, over the whole distance."""
 MORE_STEPS = 5
 """Most further steps of a search whose last step was small, and left a force unbalanced."""
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
-"""Slip lengths over the arm's length that a release goes through, from soft to what they are."""
+"""Slip lengths of a release over the arm's length, from soft to the actual one."""
 
 _OUTCOMES = {
     search.STABLE: Outcome.COMPLETED,
@@ -56,7 +56,7 @@ class Equilibrium:
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
     loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
     ``base``; SI units. ``inputs`` are the scene's, without
-    motion; ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
+    motion; ``tension`` is that at the base and ``cable_displacement`` the length drawn in there, m.
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
     it is not known: under loads without a potential, until the modes of small motion have been asked.
     ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
@@ -148,7 +148,7 @@ def _outcome(ended: int, negative: int) -> Outcome:
 
 
 class Slip(IntEnum):
-    """Which way cables that rub have all slipped: the two branches of a ramp with friction."""
+    """Direction in which all cables with friction have slipped: the two branches of a ramp."""
 
     DRAWN_IN = 1
     LET_OUT = -1
@@ -217,7 +217,7 @@ class StaticSolver:
         return replace(best, iterations=iterations)
 
     def _release(self, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The equilibrium that the arm comes to if let go, through softer slips of cables that rub."""
+        """The equilibrium that a released arm reaches, through larger slip lengths."""
         arm, left, q = self.scene.arm, list[Equilibrium](), start.copy()
         ended, iterations, passes = search.NOT_FOUND, 0, self.kernel.passes
         for slip_part in SLIP_PARTS if self.rubbing.size else (0.0,):
@@ -254,7 +254,7 @@ class StaticSolver:
         return self.examine(q, inputs, ended, iterations)
 
     def _stick_step_by_step(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The equilibrium as of ``_stick``, by way of others between the inputs before and these.
+        """The equilibrium as from ``_stick``, through intermediate inputs from the ones before.
 
         All of them remember the one before, so that where the steps are does not matter.
         """
@@ -278,7 +278,7 @@ class StaticSolver:
         return find(self.kernel.passes, q, *numbers, most)
 
     def examine(self, q: np.ndarray, inputs: np.ndarray, ended: int, iterations: int = 0) -> Equilibrium:
-        """All that is told of coordinates, shape (segments, dofs), at which a search has ``ended``."""
+        """Equilibrium at coordinates, shape (segments, dofs), at which a search has ``ended``."""
         arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         examine = newton.examine_stability if self.kernel.conservative else pseudo_transient.examine_balance

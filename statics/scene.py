@@ -131,7 +131,7 @@ class Scene:
 
     @property
     def without_potential(self) -> tuple[str, ...]:
-        """Loads that put in work without a potential, in words; friction, which has none, only takes it."""
+        """Loads that do work without a potential, in words; friction, which has none, only dissipates."""
         follows = self.has_followers or any(self.followers_among_driven)
         return ("follower loads",) if follows else ()
 

@@ -1,4 +1,4 @@
-"""A scene's compiled equations of motion, under the names that an integrator asks for."""
+"""Compiled equations of motion of a scene, with the interface of an integrator."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -53,7 +53,7 @@ class Run:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Words about what is legal but odd, a sentence or two for each."""
+        """Warnings about valid but unusual inputs or results, one or two sentences each."""
         return warnings_of(self)
 
     @property

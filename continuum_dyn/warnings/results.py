@@ -1,4 +1,4 @@
-"""Results that should be looked at twice: strains, tolerances above the travel, samples too far apart."""
+"""Warnings about results: strains, tolerances above the travel, samples too far apart."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 LARGEST_STRAIN = 0.02
 """Bending strain above which few cores stay elastic."""
 UNSEEN = 0.05
-"""Largest part of the travel by which a coordinate may stray between samples from what its rates tell."""
+"""Largest change of a coordinate between samples not explained by its rates, over the travel."""
 
 OFTEN = 8
 """Times between samples with such a departure that are more than what follows a jump."""

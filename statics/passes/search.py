@@ -27,7 +27,7 @@ TOWARDS_LIMIT = 0.1
 UNBALANCED = 1e-8
 """Largest residual over the size of the forces that meet in it, at an equilibrium."""
 ROUNDED_FORCE = 1e-12
-"""The same over the largest such size along the arm, and over the torque of the softest segment at 1 rad."""
+"""Largest residual from rounding, over the largest such size or the softest segment's torque at 1 rad."""
 LARGEST_TURN = 1.0
 """Largest turn of any disk in one step, rad."""
 

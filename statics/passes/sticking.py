@@ -37,7 +37,7 @@ from statics.passes.search import (
 )
 
 TOWARDS_SLIPPING = 0.95
-"""Largest part of what a sign lacks to 1 that one step may take."""
+"""Largest part of a sign's distance to 1 that one step may cover."""
 SLIPPING = 1.0 - 1e-15
 """Largest sign; 1 has no artanh."""
 SIGNS_AT_REST = 1e-4
@@ -97,7 +97,7 @@ def unbalanced_with(
 
 @compiled
 def lack(remembered: np.ndarray, segments: np.ndarray, holes: Holes, lacking: np.ndarray) -> None:
-    """Change of every sign that its own equation asks for while q stays, linearized, into ``lacking``."""
+    """Change of every sign that its own equation requires at fixed q, linearized, into ``lacking``."""
     columns, beyond, sign = holes
     for i in range(sign.shape[0]):
         for c in range(columns.shape[0]):
