@@ -21,7 +21,7 @@ from statics.scene import Scene
 class Growth:
     """The modes that grow about an equilibrium: how many, and how the fastest does.
 
-    ``rate`` in 1/s; ``frequency`` in Hz, zero where it does not swing.
+    ``rate`` in 1/s; ``frequency`` in Hz, zero if it does not oscillate.
     """
 
     modes: int

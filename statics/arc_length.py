@@ -129,7 +129,7 @@ class ArcLength:
         self.by_length = solver.scene.driven_by_length
         self.half_difference = NEARBY if self.by_length else HALF_DIFFERENCE
         self.weight = segments / units**2
-        """So that a uniform bend of the whole arm counts as its angle, whatever the number of segments."""
+        """Scale by which a uniform bend of the arm counts as its angle, for any number of segments."""
 
     def inputs(self, parameter: float, leg: int) -> np.ndarray:
         """Inputs at a parameter, on a leg of the ramp or on its straight continuation."""

@@ -20,7 +20,7 @@ Arguments travel in groups:
 
 - ``arm``: pieces of the inputs' profiles, segment table, disk table;
 - ``method``: a, c, error weights, predictor of the tableau; ``lasting``, the time (s) for which an error of
-  the rates is taken to last; ``slip_speed`` (m/s), infinite where no cable rubs;
+  the rates is taken to last; ``slip_speed`` (m/s), infinite without friction;
 - ``stages``: q, u, w, shape (stages, n, dofs);
 - ``workspace``: chain; six arrays like q, shape (6, n, dofs); scalars;
 - ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,

@@ -58,7 +58,7 @@ class Run:
 
     @property
     def bending_strain(self) -> float | None:
-        """Largest bending strain of a round core; None where its radius is not known."""
+        """Largest bending strain of a round core; None if its radius is not known."""
         return bending_strain(self)
 
     @property

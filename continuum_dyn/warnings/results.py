@@ -21,11 +21,11 @@ UNSEEN = 0.05
 """Largest change of a coordinate between samples not explained by its rates, over the travel."""
 
 OFTEN = 8
-"""Times between samples with such a departure that are more than what follows a jump."""
+"""Number of intervals with such a change above which it is more than the effect of a jump."""
 
 
 def bending_strain(run: "Run") -> float | None:
-    """Largest bending strain of a round core in all that was computed; None where its radius is not known."""
+    """Largest bending strain of a round core in all that was computed; None if its radius is not known."""
     arm = run.scenario.scene.arm
     radius = core_radius(arm)
     curvatures = [point.curvature[None] for point in run.equilibria if point.found]

@@ -1,4 +1,4 @@
-"""A search for the equilibrium of cables that rub, from where they were before: they stick, or slip on.
+"""A search for the equilibrium of cables with friction, which stick or slip from their earlier position.
 
 Friction at a hole is tanh(s) of its largest, s = (length before - length beyond) / slip length, with a slip
 length of 1e-6 of the arm's. Newton's method in q alone overshoots wherever a hole turns from sticking to
@@ -10,7 +10,7 @@ Neither is steep in q and sigma, and Newton's method on both together takes abou
 primal-dual interior-point methods do, whose barrier the slip length is (Chan, Golub and Mulet 1999 for a law
 of the same form). No step takes a sign beyond 1. A hole's change of sign follows from that of q, so the
 matrix left for q is the kernel's own, and the elimination along the chain solves for it; what that leaves
-out, the change of the holes' angles, is corrected only where the search fails without. The kernel knows no
+out, the change of the holes' angles, is corrected only if the search fails without it. The kernel knows no
 signs: it is given the length before that makes them.
 """
 
