@@ -16,7 +16,7 @@ from statics.errors import InputError, did_you_mean
 from statics.structure import Structure
 
 MAX_ALIKE = 20
-"""Most cables, or loads that change in time, or payloads on one disk: deriving them takes time for each."""
+"""Largest number of cables, of changing loads, or of payloads on one disk: each takes time to derive."""
 BASE_POSE = ("base_x", "base_y", "base_theta")
 BASE_MOTION = (
     *("base_velocity_x", "base_velocity_y", "base_angular_velocity"),
@@ -29,7 +29,7 @@ BASE_MOTION = (
 class Scene:
     """An arm and its effects, in an order that does not matter.
 
-    Raises ``InputError`` where an effect is given twice or needs a number that the arm does not have.
+    Raises ``InputError`` if an effect is given twice or needs a number that the arm does not have.
     """
 
     arm: Arm
@@ -131,7 +131,7 @@ class Scene:
 
     @property
     def without_potential(self) -> tuple[str, ...]:
-        """Loads that put in work without a potential, in words; friction, which has none, only takes it."""
+        """Loads that do work without a potential, in words; friction, which has none, only dissipates."""
         follows = self.has_followers or any(self.followers_among_driven)
         return ("follower loads",) if follows else ()
 
@@ -187,7 +187,7 @@ class Scene:
         """Inputs, shape (..., inputs), by glossary name, and what follows from the poses, (..., disks).
 
         ``tension`` and ``cable_displacement`` have shape (..., cables); ``load_factor`` (..., driven loads)
-        and the base's pose (...,) are None where the scene has none.
+        and the base's pose (...,) are None if the scene has none.
         """
         cables, loads = self.cables, self.cables + self.driven_loads
         known: dict[str, Any] = {"load_factor": inputs[..., cables:loads] if self.driven_loads else None}

@@ -103,7 +103,7 @@ def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
 
 
 def _place_of_rest(log: Log) -> np.ndarray:
-    """The tip's place of rest as the run tells it, x and y, m: with friction, beside its last equilibrium."""
+    """Rest position of the tip from the log, x and y, m; with friction not the last equilibrium."""
     if "rest_x" in log.attributes:
         return np.array([log.attributes["rest_x"], log.attributes["rest_y"]])
     return np.array([log.equilibria[name][-1, -1] for name in ("disk_x", "disk_y")])

@@ -17,7 +17,9 @@ def plot(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log.", show_default=False)],
     parts: Annotated[
         list[str] | None,
-        typer.Argument(metavar="PART", help="Of shapes, tip, energies; by default all.", show_default=False),
+        typer.Argument(
+            metavar="PART", help="One or more of shapes, tip, energies. Default: all.", show_default=False
+        ),
     ] = None,
     out: Annotated[
         Path | None,
@@ -36,8 +38,8 @@ def plot(
 ) -> None:
     """Draw the shapes, the tip and the energies of a log.
 
-    Over the time of a motion, or the tension, length or load factor of a ramp. Lines can be told apart in
-    black and white.
+    They are drawn over the time of a motion, or over the tension, length or load factor of a ramp. Lines
+    differ in black and white, too.
     """
     from continuum_dyn.record import read_log
     from continuum_dyn.views.figures import log_plots

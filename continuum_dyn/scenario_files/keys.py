@@ -1,4 +1,4 @@
-"""The keys of scenario files as tables for people: what each may be, what it is by default, what it means."""
+"""The keys of scenario files as tables: allowed values, default and meaning of each."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -64,7 +64,7 @@ def _profiles(definitions: dict[str, Any]) -> Iterator[KeyTable]:
 
 
 def keys_of(of_table: dict[str, Any], definitions: dict[str, Any]) -> tuple[Key, ...]:
-    """The keys of one table of the schema, but for the one that tells its kind."""
+    """Keys of one table of the schema, without the key of its kind."""
     return tuple(
         Key(
             name,

@@ -89,7 +89,7 @@ def descend(passes: RestPasses, arm: Arm, work: Work) -> int:
 
 @compiled
 def substitute(passes: RestPasses, work: Work) -> None:
-    """Set ``change`` from what the elimination left."""
+    """Set ``change`` from the result of the elimination."""
     chain, _, descent, change, _, _, scalars = work
     run(passes.substitute, change.shape[0], scalars, chain, descent, change)
 
@@ -194,7 +194,7 @@ def leave_saddle(
 ) -> bool:
     """Move ``q`` off an unstable equilibrium, down along a direction of negative curvature.
 
-    Returns whether there is a way down within the geometric limits.
+    Returns whether the energy can fall within the geometric limits.
     """
     n, dofs = q.shape
     chain, pivots, scalars = (

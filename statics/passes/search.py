@@ -12,12 +12,12 @@ from statics.passes.rest_passes import RestPasses
 STABLE, UNSTABLE, LIMIT, NOT_FOUND, BALANCED = 0, 1, 2, 3, 4
 """Outcomes of a search; BALANCED is an equilibrium of which it is not known whether it is stable."""
 UNKNOWN = -1
-"""Number of an equilibrium's unstable directions where it is not known."""
+"""Number of an equilibrium's unstable directions if it is not known."""
 
 AT_REST = 1e-8
 """Largest last Newton step (rad, or elongation over L0): its square is below rounding."""
 ROUNDED = 1e-15
-"""Largest Newton step that is rounding even where it still falls: towards zero it may for ever."""
+"""Largest Newton step that is rounding even if it still falls: towards zero it may fall for ever."""
 FALLING = 0.9
 """Largest ratio of a residual or a step to the last one while it still falls; above, it is rounding."""
 AT_LIMIT = 1e-6
@@ -27,7 +27,7 @@ TOWARDS_LIMIT = 0.1
 UNBALANCED = 1e-8
 """Largest residual over the size of the forces that meet in it, at an equilibrium."""
 ROUNDED_FORCE = 1e-12
-"""The same over the largest such size along the arm, and over the torque of the softest segment at 1 rad."""
+"""Largest residual from rounding, over the largest such size or the softest segment's torque at 1 rad."""
 LARGEST_TURN = 1.0
 """Largest turn of any disk in one step, rad."""
 
