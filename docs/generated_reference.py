@@ -132,9 +132,20 @@ def scenario_keys() -> str:
 
 def _keys(found: KeyTable) -> str:
     rows = [
-        (code(key.name), key.value.replace("profile", "[profile](#profiles)"), *key[2:]) for key in found.keys
+        (
+            code(key.name),
+            key.value.replace("profile", "[profile](#profiles)"),
+            key.default,
+            key.meaning,
+            code(key.example),
+        )
+        for key in found.keys
     ]
-    return table(("key", "value", "by default", "meaning"), rows) if rows else "It has no keys of its own."
+    return (
+        table(("key", "value", "default", "meaning", "example"), rows)
+        if rows
+        else "It has no keys of its own."
+    )
 
 
 def effects() -> str:
@@ -148,8 +159,8 @@ def effects() -> str:
         lines += [f"Source: {effect.source}."]
         parts += [f"### `{name}`", prose(_text(effect)), " ".join(lines)]
         found = of_effects[f"[effects] {name}"]
-        if found.keys:
-            parts.append(_keys(found))
+        parts += [f"```toml\n{found.example}\n```"] if found.example else []
+        parts += [_keys(found)] if found.keys else []
     return "\n\n".join(parts)
 
 
