@@ -45,9 +45,11 @@ def test_every_key_of_every_table_has_an_example() -> None:
 @pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("study", STUDIES)
 def test_examples_are_what_a_file_may_hold(study: str, profile: str) -> None:
-    given = {place: {key: value_of(text) for key, text in keys.items()} for place, keys in examples().items()}
+    given: dict[str, Any] = {
+        place: {key: value_of(text) for key, text in keys.items()} for place, keys in examples().items()
+    }
     lists = ("cables", "loads", "payloads")
-    content = given["file"] | {place: [given[place]] for place in lists}
+    content: dict[str, Any] = given["file"] | {place: [given[place]] for place in lists}
     content |= {place: given[place] for place in ("arm", "base", "solver", "accuracy", "expect")}
     content["effects"] = {place[8:]: table for place, table in given.items() if place.startswith("effects.")}
     content["study"] = {"kind": study} | given.get(f"study.{study}", {})
