@@ -99,7 +99,7 @@ A number alone is constant; in a ramp study a list has a value for each point.""
 def scenario_keys() -> str:
     """Every table of a scenario file: its keys, what they may be, what they mean."""
     parts, chapter = [], ""
-    for found in key_tables():
+    for found in key_tables()[:-1]:
         name, _, kind = found.heading.partition(" ")
         if name == "[effects]":
             if chapter != name:
@@ -112,7 +112,13 @@ def scenario_keys() -> str:
             title = "The file" if name == "the" else f"`{found.heading}`"
             parts += [f"## {title}", found.text, _keys(found)]
         chapter = name
-    return "\n\n".join(parts)
+    return "\n\n".join([*parts, materials(key_tables()[-1])])
+
+
+def materials(found: KeyTable) -> str:
+    """Every material: its figures, and their source."""
+    rows = [(code(key.name), key.value, key.meaning) for key in found.keys]
+    return "\n\n".join(["## Materials", found.text, table(("name", "figures", "source"), rows)])
 
 
 def _keys(found: KeyTable) -> str:

@@ -8,6 +8,7 @@ from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario_files.examples import examples
 from continuum_dyn.scenario_files.schema import json_schema
 from continuum_dyn.scenario_files.tables import NAMED_ELSEWHERE
+from statics.materials import MATERIALS
 
 _HEADED = re.compile(r"^\[\w+\]: ")
 
@@ -52,7 +53,23 @@ def key_tables() -> list[KeyTable]:
                 found.append(_table(f'[study] kind = "{kind}"', of_kind, definitions, f"study.{kind}"))
         elif reference := _reference(key):
             found.append(_table(_header(name, key), definitions[reference], definitions, name))
-    return [*found, *_profiles(definitions)]
+    return [*found, *_profiles(definitions), _materials()]
+
+
+def _materials() -> KeyTable:
+    """Materials in place of keys: where the figures of each are from, and what they are."""
+    rows = (
+        Key(
+            name,
+            f'core_material = "{name}"',
+            f"Young's modulus {known.youngs_modulus / 1e9:g} GPa; density {known.density:g} kg/m^3",
+            "",
+            known.source,
+        )
+        for name, known in MATERIALS.items()
+    )
+    text = "Names for `core_material` and `disk_material`: typical figures; measured ones are better."
+    return KeyTable("materials", text, tuple(rows))
 
 
 def _header(name: str, key: dict[str, Any]) -> str:
