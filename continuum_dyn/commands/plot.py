@@ -25,7 +25,7 @@ def plot(
         Path | None,
         typer.Option(
             metavar="PICTURE",
-            help="PNG, SVG or PDF by its suffix. By default logs/NAME_plot.png.",
+            help="PNG, SVG or PDF by its suffix. By default NAME_plot.png beside the log.",
             show_default=False,
         ),
     ] = None,
@@ -48,7 +48,7 @@ def plot(
     for part in parts or []:
         if part not in log_plots.PARTS:
             raise InputError(f"plot draws no '{part}'.{did_you_mean(part, log_plots.PARTS)}")
-    picture = out or Path("logs") / f"{log.stem}_plot.png"
+    picture = out or log.with_name(f"{log.stem}_plot.png")
     if picture.suffix.lower() not in SUFFIXES:
         raise InputError(f"--out takes a name that ends in {', '.join(SUFFIXES)}; read: {picture.name}.")
     read = read_log(log)
