@@ -18,14 +18,14 @@ def plot(
     parts: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="PART", help="Of shapes, inputs, tip, energies; by default all.", show_default=False
+            metavar="PART", help="Of shapes, inputs, tip, energies. Default: all.", show_default=False
         ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="PICTURE",
-            help="PNG, SVG or PDF by its suffix. By default logs/NAME_plot.png.",
+            help="PNG, SVG or PDF by its suffix. By default NAME_plot.png beside the log.",
             show_default=False,
         ),
     ] = None,
@@ -42,7 +42,7 @@ def plot(
     """Draw the shapes, the inputs, the tip and the energies of a log.
 
     Shapes are to scale. The rest is drawn over the time of a motion, or over the tension, length or load
-    factor of a ramp. Lines can be told apart in black and white.
+    factor of a ramp. Lines differ in black and white, too.
     """
     from continuum_dyn.record import read_log
     from continuum_dyn.views.figures import log_plots
@@ -51,7 +51,7 @@ def plot(
     for part in parts or []:
         if part not in log_plots.PARTS:
             raise InputError(f"plot draws no '{part}'.{did_you_mean(part, log_plots.PARTS)}")
-    picture = out or Path("logs") / f"{log.stem}_plot.png"
+    picture = out or log.with_name(f"{log.stem}_plot.png")
     if picture.suffix.lower() not in SUFFIXES:
         raise InputError(f"--out takes a name that ends in {', '.join(SUFFIXES)}; read: {picture.name}.")
     read = read_log(log)

@@ -27,7 +27,7 @@ SMALL_PART = 1e-9
 DISK_HEIGHT = 0.09
 """Height of the disks in the picture of a mode, in arm lengths."""
 STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+"), ("-", "*")]
-"""Lines and markers that can be told apart in black and white."""
+"""Lines and markers that differ in black and white."""
 LAWS = {
     "printed": {"ls": "--", "color": VERMILION, "lw": 1.6, "label": "equations as printed"},
     "program": {"ls": "-", "color": "k", "lw": 1.2, "label": "the program"},

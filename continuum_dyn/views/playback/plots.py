@@ -21,7 +21,7 @@ LEDGER = ("input_work", "dissipated_energy")
 POWERS = ("input_power", "dissipated_power")
 LINE_WIDTH, THIN = 1.5, 0.8
 MIN_AND_MAX = 5
-"""How rerun draws what is finer than a pixel: the mean of fast oscillations would look like rest."""
+"""Aggregation of samples finer than a pixel: the mean of fast oscillations would look like rest."""
 
 
 @dataclass(frozen=True)
