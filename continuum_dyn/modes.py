@@ -168,7 +168,7 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
 
 def still(inputs: np.ndarray) -> Interval:
     """An interval of constant inputs."""
-    return cut_into_intervals(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
+    return cut_into_intervals(tuple(Constant(float(value)) for value in inputs), 1.0).first
 
 
 class _Motion(NamedTuple):

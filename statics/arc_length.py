@@ -32,7 +32,11 @@ LEAST_COSINE = 0.95
 MOST_OFF = 0.1
 """Largest distance of a step from the mean of its tangents: beyond it the step has left the path."""
 SHORTEST_HIDING = 1e-3
-"""Shortest step that is searched for two hidden folds: a smaller snap may be taken for smooth."""
+"""Shortest step that is searched for two hidden folds or branchings: closer ones may be missed."""
+INVERSE_ITERATIONS = 3
+"""Number of iterations for the mode that the arm resists least."""
+STIFFNESS_DIFFERENCE = 1e-4
+"""Length along the path by which the stiffness is differenced."""
 HALF_DIFFERENCE = 0.5
 """Change of the parameter by which the residual is differenced: tensions and factors are linear in it."""
 NEARBY = 1e-6
@@ -128,6 +132,7 @@ class ArcLength:
         units = np.array([1.0, solver.scene.arm.rest_length])[:dofs]
         self.by_length = solver.scene.driven_by_length
         self.half_difference = NEARBY if self.by_length else HALF_DIFFERENCE
+        self.push = np.random.default_rng(0).standard_normal((segments, dofs)) / units
         self.weight = segments / units**2
         """Scale by which a uniform bend of the arm counts as its angle, for any number of segments."""
 
@@ -167,6 +172,27 @@ class ArcLength:
         solver, change = self.solver, np.empty_like(right)
         numbers = (solver.segments, solver.disks, self.chain, right, change)
         return change, newton.solve_exactly(self.kernel.passes, *numbers)
+
+    def softest_push(self, at: _PathPoint) -> np.ndarray:
+        """Forces, shape of q, near those of the mode that the arm resists least, by inverse iteration."""
+        self.residual(at.q, self.inputs(at.parameter, at.leg))
+        push = self.push
+        for _ in range(INVERSE_ITERATIONS):
+            push = self.solve(push)[0] * self.weight
+            push /= np.abs(push).max()
+        return push
+
+    def stiffness(self, q: np.ndarray, inputs: np.ndarray, push: np.ndarray) -> float:
+        """Stiffness against a push: it changes its sign where the matrix is singular."""
+        self.residual(q, inputs)
+        return -1.0 / float(np.sum(push * self.solve(push)[0]))
+
+    def stiffness_along(self, at: _PathPoint, push: np.ndarray) -> tuple[float, float]:
+        """The stiffness at a point, and its derivative along the path."""
+        step = STIFFNESS_DIFFERENCE
+        nearby = self.inputs(at.parameter + step * at.along_parameter, at.leg)
+        here = self.stiffness(at.q, self.inputs(at.parameter, at.leg), push)
+        return here, (self.stiffness(at.q + step * at.along, nearby, push) - here) / step
 
     def tangent_at(self, q: np.ndarray, parameter: float, leg: int = 0) -> tuple[np.ndarray, int, float]:
         """dq/dplace along the path, the number of unstable directions, and the clearance."""
@@ -319,7 +345,21 @@ class _Follower:
         )
         if cosine < LEAST_COSINE or np.sqrt(inner(off, off) + off_parameter**2) > MOST_OFF:
             return False
-        return length < SHORTEST_HIDING or not _hides_folds(here, there, length)
+        return length < SHORTEST_HIDING or not (
+            _hides_folds(here, there, length) or self._hides_branchings(there, length)
+        )
+
+    def _hides_branchings(self, there: _PathPoint, length: float) -> bool:
+        """Whether the cubic with the stiffness and its slopes at both ends changes its sign between them."""
+        if self.here.negative != there.negative:
+            return False
+        push = self.arc.softest_push(there)
+        (start, slope), (end, end_slope) = (
+            self.arc.stiffness_along(point, push) for point in (self.here, there)
+        )
+        if start * end <= 0.0:
+            return False
+        return _turns_through_zero(start, slope * length, end, end_slope * length)
 
     def _cut(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
         """A step up to the first event within it: a limit, a point of the ramp, a fold, a branching."""
@@ -412,6 +452,13 @@ def _hides_folds(here: _PathPoint, there: _PathPoint, length: float) -> bool:
     if end <= 0.0 or twist <= 0.0 or not 0.0 < -bend < 2.0 * twist:
         return False
     return start - bend**2 / (4.0 * twist) < 0.0
+
+
+def _turns_through_zero(start: float, slope: float, end: float, end_slope: float) -> bool:
+    """Whether the cubic over 0 to 1 with these values and slopes at both ends is zero somewhere between."""
+    change = end - start
+    roots = np.roots([slope + end_slope - 2.0 * change, 3.0 * change - 2.0 * slope - end_slope, slope, start])
+    return bool(np.any((roots.imag == 0.0) & (roots.real > 0.0) & (roots.real < 1.0)))
 
 
 def _point_between(parameter: float, other: float) -> float | None:

@@ -221,9 +221,23 @@ class Arm:
         return cls(**{**PRESETS[name], **changes})
 
     @staticmethod
-    def round_core(radius: float) -> dict[str, float]:
-        """Area and second moment of a round core of that radius (m), as arguments of ``Arm``."""
-        return {"area": pi * radius**2, "second_moment": pi * radius**4 / 4}
+    def round_core(radius: float, inner_radius: float = 0.0) -> dict[str, float]:
+        """Area and second moment of a round core or a tube of these radii (m), as arguments of ``Arm``."""
+        return {
+            "area": pi * (radius**2 - inner_radius**2),
+            "second_moment": pi * (radius**4 - inner_radius**4) / 4,
+        }
+
+    @staticmethod
+    def round_disk(
+        mass: float, radius: float, thickness: float, inner_radius: float = 0.0
+    ) -> dict[str, float]:
+        """Mass (kg) and in-plane moment of inertia (kg m^2) of a disk or a ring, as arguments of ``Arm``.
+
+        Of a body of even density, these radii and that thickness (m): m (3 (R^2 + r^2) + h^2) / 12.
+        """
+        squares = 3 * (radius**2 + inner_radius**2) + thickness**2
+        return {"disk_mass": mass, "disk_inertia": mass * squares / 12}
 
     def knows(self, name: str) -> bool:
         """Whether the number of that name is given, once or for each disk."""

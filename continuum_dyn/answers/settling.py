@@ -142,7 +142,7 @@ def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
     check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
     end = scenario.require_motion("only a motion settles").duration
-    inputs = cut_into_intervals(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
+    inputs = cut_into_intervals(scenario.profiles, end).last.inputs(np.array([end]))[0]
     rest = [log.equilibria[name][-1] for name in ("bend_angle", "elongation") if name in log.equilibria]
     with np.errstate(all="ignore"):
         return modes(dynamics, dynamics.state(np.column_stack(rest)), still(inputs))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from continuum_dyn.commands.terminal.output import console, give_back
-from continuum_dyn.commands.terminal.show import duration, length, plain_table
+from continuum_dyn.commands.terminal.show import bending, duration, length, plain_table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -65,7 +65,7 @@ def _facts(log: "Log") -> Iterator[tuple[str, str]]:
         if name in given:
             yield name.replace("_", " "), length(given[name])
     if "bending_strain" in given:
-        yield "bending", f"{100 * given['bending_strain']:.2g} % strain of the core at most"
+        yield "bending", bending(given["bending_strain"])
     for warning in given.get("warnings", "").splitlines():
         yield "warning", warning
     yield "solving", f"{duration(given['solve_time'])}"

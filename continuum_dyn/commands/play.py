@@ -10,6 +10,8 @@ from statics.errors import InputError
 
 RECORDING = ".rrd"
 """Ending of the names of rerun's recordings."""
+SIGNATURE = b"RRF"
+"""First bytes of rerun's recordings."""
 
 
 def play(
@@ -37,13 +39,9 @@ def play(
     """
     if web and save is not None:
         raise InputError("--web shows the recording and --save keeps it in a file. Give one of them.")
+    if save is not None:
+        _check_target(save)
     from continuum_dyn.record import read_log
-    from continuum_dyn.record.reading import is_hdf5
-
-    if save is not None and save.suffix.lower() != RECORDING:
-        raise InputError(f"--save takes a name that ends in {RECORDING}; read: {save.name}.")
-    if save is not None and is_hdf5(save):
-        raise InputError(f"--save {save}: a log is there, and is not replaced. Choose another name.")
     from continuum_dyn.views.playback import recording, viewer
 
     found = [read_log(path) for path in logs]
@@ -54,3 +52,16 @@ def play(
         viewer.serve(found, lambda address: say(f"{address}\nUntil Ctrl-C."))
     else:
         viewer.show(found)
+
+
+def _check_target(save: Path) -> None:
+    """Raise ``InputError`` if a recording of that name is none, or would replace another kind of file."""
+    if save.suffix.lower() != RECORDING:
+        raise InputError(f"--save takes a name that ends in {RECORDING}; read: {save.name}.")
+    if save.is_file():
+        with save.open("rb") as file:
+            start = file.read(len(SIGNATURE))
+        if start and start != SIGNATURE:
+            raise InputError(
+                f"--save {save}: the file there is no recording and is kept. Choose another name."
+            )

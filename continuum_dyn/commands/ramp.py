@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.arguments import BesideLog
 from continuum_dyn.commands.terminal.assertions import (
     HELP,
     Verdict,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 def ramp(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a ramp.", show_default=False)],
-    out: Folder = Path("logs"),
+    out: BesideLog = None,
     error: Annotated[
         float, typer.Option(metavar="LENGTH", help="Lag (m) up to which a ramp counts as quasistatic.")
     ] = 1e-4,
@@ -63,11 +63,12 @@ def ramp(
         raise InputError(f"--error takes a length above 0, in m; read: {error:g}.")
     read = read_log(log)
     found = ramp_answers(read, error)
-    make_folder(out)
+    folder = out or log.parent
+    make_folder(folder)
     if measure:
         scenario, before = logged_scenario(read), found
         found = with_status(read.title, lambda progress: measure_at_other_rates(before, scenario, progress))
-    picture = out / f"{log.stem}_ramp.png"
+    picture = folder / f"{log.stem}_ramp.png"
     save(ramp_plot.ramp(read.title, found), picture)
     verdicts = judge(asked, found.figures)
     if as_json:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.arguments import BesideLog
 from continuum_dyn.commands.terminal.assertions import (
     HELP,
     Verdict,
@@ -28,7 +28,7 @@ CLEAR_MISFIT = 0.05
 
 def settle(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a motion.", show_default=False)],
-    out: Folder = Path("logs"),
+    out: BesideLog = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     assertions: Annotated[
         list[str] | None,
@@ -49,8 +49,9 @@ def settle(
     asked = parse(assertions or [], FIGURES)
     read = read_log(log)
     found = settling(read)
-    make_folder(out)
-    picture = out / f"{log.stem}_settle.png"
+    folder = out or log.parent
+    make_folder(folder)
+    picture = folder / f"{log.stem}_settle.png"
     save(settling_plot.settling(read.title, found), picture)
     verdicts = judge(asked, found.figures)
     if as_json:

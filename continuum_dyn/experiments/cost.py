@@ -144,7 +144,7 @@ def fastest_rate(motion: Motion) -> float:
     """Largest rate (1/s) of the motion linearized at its start, which explicit steps must resolve."""
     if motion.dynamics.scene.arm.massless_nodes:
         return np.inf
-    return rates(motion.dynamics, motion.start, motion.intervals[0])[1]
+    return rates(motion.dynamics, motion.start, motion.timeline.first)[1]
 
 
 def _complete(motion: Motion, solver: Solver) -> Trajectory:

@@ -80,7 +80,7 @@ def explicit_on_a_stiff_arm(run: "Run") -> Iterator[str]:
     if run.trajectory is None or study is None or solver.chooses_method or METHODS[solver.method].implicit:
         return
     dynamics, start = Dynamics(run.scenario.scene), run.equilibria[0].coordinates
-    interval = cut_into_intervals(run.scenario.profiles, study.duration)[0]
+    interval = cut_into_intervals(run.scenario.profiles, study.duration).first
     better = choose(dynamics, dynamics.state(start), interval, study.duration)
     if better.method == "chain":
         yield f'method "{solver.method}" is explicit, and {better.reason}. Try method = "chain".'

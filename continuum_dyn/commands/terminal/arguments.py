@@ -9,6 +9,12 @@ ScenarioFile = Annotated[
     Path, typer.Argument(metavar="FILE", help="A scenario file (TOML).", show_default=False)
 ]
 Folder = Annotated[Path, typer.Option(metavar="DIR", help="Folder for the written files.")]
+BesideLog = Annotated[
+    Path | None,
+    typer.Option(
+        "--out", metavar="DIR", help="Folder for the written files; by default the log's.", show_default=False
+    ),
+]
 Overrides = Annotated[
     list[str] | None,
     typer.Option(
