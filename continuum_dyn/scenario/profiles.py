@@ -22,8 +22,8 @@ TIME_RESOLUTION = 1e-300
 """Shortest time between rows of a table, s; slopes over less are beyond floating point."""
 
 Value = Annotated[float, Field(description="value at all times, in the unit of the driven quantity")]
-Before = Annotated[float, Field(description="value before, in the unit of the driven quantity")]
-After = Annotated[float, Field(description="value after, in the unit of the driven quantity")]
+Before = Annotated[float, Field(description="value before the change, in the unit of the driven quantity")]
+After = Annotated[float, Field(description="value after the change, in the unit of the driven quantity")]
 Start = Annotated[NonNegative, Field(description="time at which the ramp starts, s")]
 End = Annotated[Positive, Field(description="time at which the ramp ends, s")]
 

@@ -97,7 +97,7 @@ MaterialName = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(MA
 
 
 class ArmTable(BaseModel):
-    """[arm]: its numbers, or what they follow from; what is given beats the preset."""
+    """[arm]: its numbers, directly or from dimensions and materials; they override the preset."""
 
     model_config = STRICT
     preset: Annotated[
@@ -132,7 +132,7 @@ class ArmTable(BaseModel):
 
 
 class CableTable(BaseModel):
-    """One of [[cables]]: driven by its tension, or by its displacement with its stiffness."""
+    """One of [[cables]]: driven by its tension, or by its displacement and stiffness."""
 
     model_config = STRICT
     name: Annotated[
@@ -174,7 +174,7 @@ NAMED_ELSEWHERE = ("cables", "cable_friction", "loads")
 EffectsTable: type[BaseModel] = create_model(
     "EffectsTable",
     __config__=STRICT,
-    __doc__="[effects]: the effects in play; what is not named is in no equation.",
+    __doc__="[effects]: the effects to include; others are left out of the equations.",
     **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
 )
 
