@@ -97,7 +97,7 @@ def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
     start = CubicSpline(motion["time"], tip)(begin)
     line = _place_of_rest(log) - start
     travel = float(np.hypot(*line))
-    if travel < NO_TRAVEL * log.arm["disks"] * log.arm["disk_spacing"]:
+    if travel < NO_TRAVEL * log.arm_length:
         raise InputError(f"{log.path}: the tip is where it will rest from the start; it does not travel.")
     return (tip - start) @ line / travel, travel
 

@@ -32,3 +32,8 @@ class Log:
     equilibria: Mapping[str, np.ndarray]
     counters: Mapping[str, int]
     complete: bool
+
+    @property
+    def arm_length(self) -> float:
+        """Undeformed length of the arm, m; its ``disk_spacing`` is one number, or one for each disk."""
+        return float(np.mean(self.arm["disk_spacing"])) * self.arm["disks"]
