@@ -80,7 +80,7 @@ def follow_path(
     """The path of equilibria along a ramp of tensions through all its folds.
 
     Each of ``tensions`` is what ``equilibrium`` takes. The path begins at the equilibrium that a search finds
-    from ``start``, or from straight, and takes at most so many ``steps``. Raises ``InputError`` for tensions
+    from ``start``, or from straight, and takes at most this number of ``steps``. Raises ``InputError`` for tensions
     that do not fit, and for scenes without a potential.
     """
     scene.check_followable()
