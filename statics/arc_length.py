@@ -80,8 +80,8 @@ def follow_path(
     """The path of equilibria along a ramp of tensions through all its folds.
 
     Each of ``tensions`` is as for ``equilibrium``. The path starts at the equilibrium that a search finds
-    from ``start``, or from the straight arm, and takes at most ``steps`` steps. Raises ``InputError`` for tensions
-    that do not fit, and for scenes without a potential.
+    from ``start``, or from the straight arm, and takes at most ``steps`` steps. Raises ``InputError`` for
+    tensions that do not fit, and for scenes without a potential.
     """
     scene.check_followable()
     solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
