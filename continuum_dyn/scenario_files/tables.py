@@ -170,6 +170,23 @@ class BaseTable(BaseModel):
     angle: NumberOrProfile = 0.0
 
 
+class MaterialDampingTable(BaseModel):
+    """[effects] material_damping: by its retardation time, or by the first mode's damping ratio."""
+
+    model_config = STRICT
+    retardation_time: NonNegative | None = None
+    damping_ratio: Annotated[
+        Positive | None,
+        Field(
+            description="damping ratio of the first mode of the unloaded arm (no gravity, tension or loads); "
+            "sets retardation_time"
+        ),
+    ] = None
+
+
+OF_EFFECTS: dict[str, type] = EFFECTS | {"material_damping": MaterialDampingTable}
+"""The tables of effects by name: their own fields, but where a description leads to them."""
+
 NAMED_ELSEWHERE = ("cables", "cable_friction", "loads")
 """Effects that come with a table of their own, or with a key in it."""
 
@@ -177,7 +194,7 @@ EffectsTable: type[BaseModel] = create_model(
     "EffectsTable",
     __config__=STRICT,
     __doc__="[effects]: the effects in play; what is not named is in no equation.",
-    **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
+    **{name: (effect | None, None) for name, effect in OF_EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
 )
 
 StudyTable = Annotated[
