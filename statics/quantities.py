@@ -78,13 +78,14 @@ hole_offset          | r     | m      | cable hole's place along the disk's y ax
 near_hole_offset     | r'    | m      | that of the same cable's hole before it
 hole                 | -     | 1      | number of the disk that a hole is in, 0 for the base
 anchor               | -     | 1      | number of the disk where a cable ends
-cable_passes         | b     | 1      | 1 on segments whose end has a hole that a cable passes, 0 elsewhere
+start                | -     | 1      | number of the disk where a cable leaves its sheath, 0 for the base
+cable_passes         | b     | 1      | 1 on segments whose end has a hole of a bare cable, 0 elsewhere
 tension              | tau   | N      | tension of a cable
 cable_length         | l     | m      | length of a cable from hole to hole
 cable_displacement   | delta | m      | length of a cable drawn in at the base, against the unloaded arm
 cable_displacement_rate | delta' | m/s | speed at which a cable is drawn in at the base
 cable_stiffness      | k_c   | N/m    | tension of a cable that is driven by its length, over its stretch
-cable_rest_length    | Lambda_0 | m   | length of a cable from the base to its anchor in the unloaded arm
+cable_rest_length    | Lambda_0 | m   | length of a cable from first hole to anchor in the unloaded arm
 friction             | mu    | 1      | coefficient of friction of a cable at its holes
 slip_speed           | v_s   | m/s    | speed of slip at which friction is three quarters of its most
 slip_length          | l_s   | m      | slip from rest at which friction is three quarters of its most

@@ -110,6 +110,7 @@ def _cable(cable: CableTable, numbered: str) -> Cable:
         cable.anchor,
         cable_stiffness=cable.cable_stiffness,
         friction=cable.friction,
+        start=cable.start,
         **slip,
     )
 

@@ -142,6 +142,10 @@ class CableTable(BaseModel):
         Field(description="what the cable is called in results, logs and plots"),
     ] = None
     hole_offset: NumberEach
+    start: Annotated[
+        DiskNumber | None,
+        Field(description="disk where it leaves a sheath that the disks before do not feel; else the base"),
+    ] = None
     anchor: DiskNumber | None = None
     tension: Tension | None = None
     cable_displacement: AnyDrive | None = None
