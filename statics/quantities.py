@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A named physical quantity; ``unit`` is SI, "1" where there is none.
+    """A named physical quantity; ``unit`` is SI, "1" if there is none.
 
-    ``letter`` stands for it in printed equations; it is the name itself where there is no customary one.
+    ``letter`` stands for it in printed equations; it is the name itself if there is no customary one.
     """
 
     name: str

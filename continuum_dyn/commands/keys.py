@@ -38,7 +38,7 @@ def keys(
 
 
 def _named(name: str, tables: "Sequence[KeyTable]") -> "list[KeyTable]":
-    """The tables in whose headings a name stands. Raises ``InputError`` where it stands in none."""
+    """The tables in whose headings a name stands. Raises ``InputError`` if it stands in none."""
     words = {table.heading: _words(table.heading) for table in tables}
     found = [table for table in tables if name in words[table.heading]]
     if not found:

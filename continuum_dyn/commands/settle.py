@@ -1,4 +1,4 @@
-"""``continuum-dyn settle``: how a motion comes to rest."""
+"""``continuum-dyn settle``: settling times and ring-down of a motion."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.arguments import BesideLog
 from continuum_dyn.commands.terminal.assertions import (
     HELP,
     Verdict,
@@ -28,7 +28,7 @@ CLEAR_MISFIT = 0.05
 
 def settle(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a motion.", show_default=False)],
-    out: Folder = Path("logs"),
+    out: BesideLog = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     assertions: Annotated[
         list[str] | None,
@@ -37,10 +37,10 @@ def settle(
 ) -> None:
     """Show how the motion of a log settles.
 
-    After the last change of what drives the arm, along the straight way of its tip to where it rests:
-    rise time, overshoot, settling times; frequency and damping ratio of the ring-down, beside those of the
-    linear mode at that equilibrium; and the gap that is left. Writes DIR/NAME_settle.png. Exit status:
-    1 if an assertion does not hold.
+    Evaluates the motion after the last change of the inputs, along the straight line from the tip to its rest
+    position: rise time, overshoot, settling times; frequency and damping ratio of the ring-down, compared
+    with those of the linear mode at that equilibrium; and the remaining gap. Writes DIR/NAME_settle.png.
+    Exit status: 1 if an assertion does not hold.
     """
     from continuum_dyn.answers.settling import FIGURES, settling
     from continuum_dyn.record import read_log
@@ -49,8 +49,9 @@ def settle(
     asked = parse(assertions or [], FIGURES)
     read = read_log(log)
     found = settling(read)
-    make_folder(out)
-    picture = out / f"{log.stem}_settle.png"
+    folder = out or log.parent
+    make_folder(folder)
+    picture = folder / f"{log.stem}_settle.png"
     save(settling_plot.settling(read.title, found), picture)
     verdicts = judge(asked, found.figures)
     if as_json:

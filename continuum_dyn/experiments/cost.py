@@ -66,7 +66,7 @@ class MeshPrice:
     Under the motion's last tensions; ``tip_error`` in m, ``angle_error`` in rad. ``limit_error`` is that of
     the tip extrapolated from this mesh and the one of half as many segments. ``seconds`` is the time of one
     equilibrium, ``iterations`` times segments its work; ``motion_seconds`` that of the whole motion, None
-    where nodes without mass forbid it.
+    if nodes without mass forbid it.
     """
 
     subsegments: int
@@ -144,7 +144,7 @@ def fastest_rate(motion: Motion) -> float:
     """Largest rate (1/s) of the motion linearized at its start, which explicit steps must resolve."""
     if motion.dynamics.scene.arm.massless_nodes:
         return np.inf
-    return rates(motion.dynamics, motion.start, motion.intervals[0])[1]
+    return rates(motion.dynamics, motion.start, motion.timeline.first)[1]
 
 
 def _complete(motion: Motion, solver: Solver) -> Trajectory:

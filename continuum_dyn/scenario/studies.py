@@ -22,7 +22,7 @@ MAX_STORED = 20_000_000
 
 
 class StudyKind(ABC):
-    """Base of the studies: what others ask of each, answered for an arm at rest."""
+    """Base of the studies, with defaults for an arm at rest."""
 
     takes_lists: ClassVar[bool] = False
     """Whether drives are lists of values; otherwise they are profiles."""
@@ -102,7 +102,7 @@ class RampStudy(StudyKind):
         """Inputs of each point of the ramp, shape (points, inputs)."""
         ramps = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
         constant = scenario.initial_inputs[ramps.shape[1] :]
-        return np.hstack([ramps, np.tile(constant, (len(ramps), 1))])
+        return np.ascontiguousarray(np.hstack([ramps, np.tile(constant, (len(ramps), 1))]))
 
 
 @dataclass(frozen=True, config=STRICT)

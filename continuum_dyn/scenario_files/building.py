@@ -25,7 +25,7 @@ from statics.scene import Scene
 
 
 def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
-    """Build the scenario of a checked file; ``name`` is its title where the file gives none."""
+    """Build the scenario of a checked file; ``name`` is its title if the file gives none."""
     is_ramp = file.study.takes_lists
     given = {name: effect for name, effect in file.effects if effect is not None}
     damping = given.pop("material_damping", None)
@@ -94,7 +94,7 @@ def _arm(file: ScenarioFile, numbers: Numbers) -> Arm:
 
 
 def _subsegments(given: int | str | None) -> int:
-    """Segments from disk to disk; where the program chooses them it starts from one."""
+    """Segments from disk to disk; if the program chooses them it starts from one."""
     if given is None or given == "auto":
         return 1
     if isinstance(given, str) or given < 1:

@@ -1,4 +1,4 @@
-"""The keys of scenario files as tables for people: an example, what each may be, its default, its meaning."""
+"""The keys of scenario files as tables: an example, allowed values, default and meaning of each."""
 
 import re
 from collections.abc import Iterator
@@ -105,7 +105,7 @@ def _inline(name: str, keys: tuple[Key, ...], *first: str) -> str:
 
 
 def keys_of(of_table: dict[str, Any], definitions: dict[str, Any], place: str) -> tuple[Key, ...]:
-    """The keys of one table of the schema, but for the one that tells its kind.
+    """Keys of one table of the schema, without the key of its kind.
 
     ``place`` names the table among the examples.
     """

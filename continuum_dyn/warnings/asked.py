@@ -1,9 +1,10 @@
 """Requests that come to nothing: quantities without an effect, drives without a change, studies in vain."""
 
 from collections.abc import Iterator
+from math import inf
 from typing import Any
 
-from continuum_dyn.scenario.profiles import Piecewise
+from continuum_dyn.scenario.profiles import Profile, change_times
 from continuum_dyn.scenario.scenario import Scenario, dissipated_by
 from statics.arm import RONE2012, Arm
 
@@ -44,13 +45,19 @@ def drives_without_a_change(scenario: Scenario) -> Iterator[str]:
     study = scenario.study.motion
     if study is None:
         return
-    drives = _named_drives(scenario)
-    for name, profile in drives:
-        late = [piece[0] for piece in profile.pieces()[1:] if piece[0] >= study.duration]
-        if late:
-            end = study.duration
-            yield f"{name} changes at {late[0]:g} s, and the run ends at {end:g} s: none of it shows."
-    if study.settles and drives and not any(_changes(profile) for _, profile in drives):
+    drives = [(name, change_times(profile)) for name, profile in _named_drives(scenario)]
+    for name, changes in drives:
+        if changes is not None and changes[0] >= study.duration:
+            yield (
+                f"{name} changes at {changes[0]:g} s, and the run ends at {study.duration:g} s: none of it "
+                "shows. Make the [study] longer, or the change earlier."
+            )
+        elif changes is not None and study.duration < changes[1] < inf:
+            yield (
+                f"{name} changes until {changes[1]:g} s, and the run ends at {study.duration:g} s: the rest "
+                "does not show."
+            )
+    if study.settles and drives and not any(changes for _, changes in drives):
         yield 'a step response to constant inputs: nothing steps. Give a tension with profile = "step".'
     if study.settles and not dissipated_by(scenario.scene):
         yield (
@@ -59,7 +66,7 @@ def drives_without_a_change(scenario: Scenario) -> Iterator[str]:
         )
 
 
-def _named_drives(scenario: Scenario) -> list[tuple[str, Piecewise]]:
+def _named_drives(scenario: Scenario) -> list[tuple[str, Profile]]:
     cables = (f"the drive of cable '{cable.name}'" for cable in scenario.scene.arm.cables)
     loads = (f"load factor {number}" for number in range(1, len(scenario.load_factors) + 1))
     base = (f"[base] {name}" for name in ("x", "y", "angle"))
@@ -68,11 +75,3 @@ def _named_drives(scenario: Scenario) -> list[tuple[str, Piecewise]]:
     for names, given in zip((cables, loads, base), profiles, strict=True):
         named += zip(names, given, strict=False)
     return named
-
-
-def _changes(profile: Piecewise) -> bool:
-    """Whether a profile has another value at some time."""
-    return any(
-        value != profile.initial or slope != 0.0 or (amplitude != 0.0 and frequency != 0.0)
-        for _, value, slope, amplitude, frequency, _ in profile.pieces()
-    )

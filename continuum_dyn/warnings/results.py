@@ -1,4 +1,4 @@
-"""Results that should be looked at twice: strains, tolerances above the travel, samples too far apart."""
+"""Warnings about results: strains, tolerances above the travel, samples too far apart."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 LARGEST_STRAIN = 0.02
 """Bending strain above which few cores stay elastic."""
 UNSEEN = 0.05
-"""Largest part of the travel by which a coordinate may stray between samples from what its rates tell."""
+"""Largest change of a coordinate between samples not explained by its rates, over the travel."""
 
 OFTEN = 8
-"""Times between samples with such a departure that are more than what follows a jump."""
+"""Number of intervals with such a change above which it is more than the effect of a jump."""
 
 
 def bending_strain(run: "Run") -> float | None:
-    """Largest bending strain of a round core in all that was computed; None where its radius is not known."""
+    """Largest bending strain of a round core in all that was computed; None if its radius is not known."""
     arm = run.scenario.scene.arm
     radius = core_radius(arm)
     curvatures = [point.curvature[None] for point in run.equilibria if point.found]
@@ -80,7 +80,7 @@ def explicit_on_a_stiff_arm(run: "Run") -> Iterator[str]:
     if run.trajectory is None or study is None or solver.chooses_method or METHODS[solver.method].implicit:
         return
     dynamics, start = Dynamics(run.scenario.scene), run.equilibria[0].coordinates
-    interval = cut_into_intervals(run.scenario.profiles, study.duration)[0]
+    interval = cut_into_intervals(run.scenario.profiles, study.duration).first
     better = choose(dynamics, dynamics.state(start), interval, study.duration)
     if better.method == "chain":
         yield f'method "{solver.method}" is explicit, and {better.reason}. Try method = "chain".'

@@ -23,7 +23,7 @@ def _slope_names(cable: CableSymbols) -> list[str]:
 def carry_slopes(trace: Trace, forces: SceneForces, coupled: list[CableSymbols]) -> Carried:
     """Carry the slopes from a span's end, where they are known, to its start, where the hole is.
 
-    A span that the cable does not pass has those of a hole that changes no tension.
+    A span that the cable does not pass has the slopes of a hole that changes no tension.
     """
     carried: Carried = {}
     start = symbol("starts_span")
