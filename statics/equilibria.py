@@ -316,8 +316,13 @@ class StaticSolver:
         if isinstance(before, Slip):
             lengths = [np.full(arm.disks, before * FAR * arm.total_length) for _ in arm.cables]
         else:
-            ways = (cable_lengths(cable, before.poses) for cable in arm.cables)
-            lengths = [np.pad(np.cumsum(way[::-1])[::-1], (0, arm.disks - way.size)) for way in ways]
+            ways = [cable_lengths(cable, before.poses) for cable in arm.cables]
+            starts = [cable.start or 0 for cable in arm.cables]
+            ways = [
+                np.pad(way, (start, arm.disks - start - way.size))
+                for start, way in zip(starts, ways, strict=True)
+            ]
+            lengths = [np.cumsum(way[::-1])[::-1] for way in ways]
         for number, beyond in enumerate(lengths, start=1):
             self._set(f"length_before_{number}", np.repeat(beyond, arm.subsegments))
 

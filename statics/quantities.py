@@ -78,13 +78,14 @@ hole_offset          | r     | m      | position of a cable's hole along the dis
 near_hole_offset     | r'    | m      | hole offset of the same cable at the disk before
 hole                 | -     | 1      | number of the disk that a hole is in, 0 for the base
 anchor               | -     | 1      | number of the disk where a cable ends
-cable_passes         | b     | 1      | 1 on segments whose end has a hole that a cable passes, 0 elsewhere
+start                | -     | 1      | number of the disk where a cable leaves its sheath, 0 for the base
+cable_passes         | b     | 1      | 1 on segments whose end has a hole of a bare cable, 0 elsewhere
 tension              | tau   | N      | tension of a cable
 cable_length         | l     | m      | length of a cable from hole to hole
 cable_displacement   | delta | m      | length of a cable drawn in at the base, against the unloaded arm
 cable_displacement_rate | delta' | m/s | speed at which a cable is drawn in at the base
 cable_stiffness      | k_c   | N/m    | tension of a length-driven cable over its stretch
-cable_rest_length    | Lambda_0 | m   | length of a cable from the base to its anchor in the unloaded arm
+cable_rest_length    | Lambda_0 | m   | length of a cable from first hole to anchor in the unloaded arm
 friction             | mu    | 1      | coefficient of friction of a cable at its holes
 slip_speed           | v_s   | m/s    | slip speed at which friction is three quarters of its maximum
 slip_length          | l_s   | m      | slip from rest at which friction is three quarters of its maximum

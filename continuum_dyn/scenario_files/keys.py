@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario_files.examples import examples
 from continuum_dyn.scenario_files.schema import json_schema
-from continuum_dyn.scenario_files.tables import NAMED_ELSEWHERE
+from continuum_dyn.scenario_files.tables import NAMED_ELSEWHERE, OF_EFFECTS
 from statics.materials import MATERIALS
 
 _HEADED = re.compile(r"^\[\w+\]: ")
@@ -83,7 +83,7 @@ def _table(heading: str, of_table: dict[str, Any], definitions: dict[str, Any], 
 
 def _effects(definitions: dict[str, Any]) -> Iterator[KeyTable]:
     for name, effect in EFFECTS.items():
-        of_effect = definitions.get(effect.__name__, {})
+        of_effect = definitions.get(OF_EFFECTS[name].__name__, {})
         text = (effect.__doc__ or "").partition("\n\n")[0].replace("``", "`")
         found = KeyTable(f"[effects] {name}", text, keys_of(of_effect, definitions, f"effects.{name}"))
         yield found if name in NAMED_ELSEWHERE else found._replace(example=_inline(name, found.keys))
@@ -99,7 +99,8 @@ def _profiles(definitions: dict[str, Any]) -> Iterator[KeyTable]:
 
 def _inline(name: str, keys: tuple[Key, ...], *first: str) -> str:
     """A table on one line, with examples of the keys that it must have."""
-    known = ", ".join([*first, *(key.example for key in keys if key.default == "required")])
+    needed = [key.example for key in keys if key.default == "required"]
+    known = ", ".join([*first, *(needed or [key.example for key in keys[:1] if not key.default])])
     return f"{name} = {{ {known} }}" if known else f"{name} = {{}}"
 
 

@@ -9,11 +9,11 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import STUDIES
 from continuum_dyn.scenario_files.tables import (
+    OF_EFFECTS,
     ArmTable,
     BaseTable,
     CableTable,
@@ -39,7 +39,7 @@ _KEYS: dict[str, Any] = {
     "solver": Solver,
     "accuracy": Accuracy,
     **{f"study.{name}": study for name, study in STUDIES.items()},
-    **{f"effects.{name}": effect for name, effect in EFFECTS.items()},
+    **{f"effects.{name}": effect for name, effect in OF_EFFECTS.items()},
     **{
         f"{place}.{name}": TableFile if name == "table" else profile
         for place in (

@@ -140,6 +140,10 @@ class CableTable(BaseModel):
         Field(description="name of the cable in results, logs and plots"),
     ] = None
     hole_offset: NumberEach
+    start: Annotated[
+        DiskNumber | None,
+        Field(description="disk where it leaves a sheath that the disks before do not feel; else the base"),
+    ] = None
     anchor: DiskNumber | None = None
     tension: Tension | None = None
     cable_displacement: AnyDrive | None = None
@@ -168,6 +172,23 @@ class BaseTable(BaseModel):
     angle: NumberOrProfile = 0.0
 
 
+class MaterialDampingTable(BaseModel):
+    """[effects] material_damping: by its retardation time, or by the first mode's damping ratio."""
+
+    model_config = STRICT
+    retardation_time: NonNegative | None = None
+    damping_ratio: Annotated[
+        Positive | None,
+        Field(
+            description="damping ratio of the first mode of the unloaded arm (no gravity, tension or loads); "
+            "sets retardation_time"
+        ),
+    ] = None
+
+
+OF_EFFECTS: dict[str, type] = EFFECTS | {"material_damping": MaterialDampingTable}
+"""The tables of effects by name: their own fields, but where a description leads to them."""
+
 NAMED_ELSEWHERE = ("cables", "cable_friction", "loads")
 """Effects that come with a table of their own, or with a key in it."""
 
@@ -175,7 +196,7 @@ EffectsTable: type[BaseModel] = create_model(
     "EffectsTable",
     __config__=STRICT,
     __doc__="[effects]: the effects to include; others are left out of the equations.",
-    **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
+    **{name: (effect | None, None) for name, effect in OF_EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
 )
 
 StudyTable = Annotated[

@@ -148,6 +148,8 @@ def _check(scene: Scene) -> None:
         raise InputError("the exact rod does not know loads that change in time.")
     if any(kind.coupled for kind in scene.cable_kinds):
         raise InputError("the exact rod knows cables of given tension, without friction.")
+    if any(cable.start for cable in scene.arm.cables[: scene.cables]):
+        raise InputError("the exact rod knows cables that start at the base.")
     if scene.has_followers:
         raise InputError("the exact rod does not know loads that turn with their disk.")
     if scene.arm.payloads:
