@@ -25,7 +25,8 @@ def cost(
     """Show what accuracy costs in time.
 
     Runs the motion by every method over a range of tolerances, on finer and finer meshes, and without each
-    of its effects; prints error, time and work, and the cheapest way to each error. Writes DIR/NAME_cost.csv,
+    of its effects; prints error, least time and work, and the cheapest way to each error: that of least work,
+    weighed by its method's time for an evaluation. Writes DIR/NAME_cost.csv,
     NAME_cost_mesh.csv, NAME_cost.h5 and NAME_cost.png.
     """
     from continuum_dyn.experiments.cost import measure
@@ -124,7 +125,8 @@ def _effect_table(measured: "Cost") -> Any:
 
 
 def _frontier_table(measured: "Cost") -> Any:
-    frontier = plain_table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
+    title = "\nCheapest way to a tip error, by work at each method's time for an evaluation"
+    frontier = plain_table(title, "below", "method", "rtol", "time", "work")
     for target, p in measured.frontier().items():
         if p is None:
             frontier.add_row(length(target), "not reached")

@@ -40,10 +40,10 @@ def point() -> Equilibrium:
     ],
 )
 def test_message_names_what_is_not_settled_with_its_limit(gap: float, speed: float, said: str) -> None:
-    decay = np.exp(0.1 * (3.0 - TIME))
+    decay = np.exp(0.2 * (3.0 - TIME))
     message = unsettled_message(TIME, gap * decay, speed * decay, WITHIN, np.inf)
     assert said in message
-    settled = 3.0 + np.log(max(gap, speed) / WITHIN) / 0.1
+    settled = 3.0 + np.log(max(gap, speed) / WITHIN) / 0.2
     assert f"settles after some {settled:.2g} s" in message
     assert "slip_speed" not in message
     constant = np.ones(TIME.size)
