@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides
+from continuum_dyn.commands.terminal.clock import answer_begun
 from continuum_dyn.commands.terminal.extras import MissingExtraError, naming_extras
 from continuum_dyn.commands.terminal.log_names import hold_log, named_log
 from continuum_dyn.commands.terminal.output import console, say
@@ -139,7 +140,7 @@ def _answer(job: Job, quiet: bool, live: bool) -> dict[str, Any]:
     from continuum_dyn.record.comparison import compare
     from continuum_dyn.simulation import simulate
 
-    started = time.perf_counter()
+    started = answer_begun()
     with hold_log(job.log, job.scenario.text, job.numbered) as (streamed, replaces):
         if live:
             from continuum_dyn.views.playback.live import start

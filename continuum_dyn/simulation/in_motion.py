@@ -70,7 +70,7 @@ def _integrate_and_check(
         else:
             moved = _integrate_to_accuracy(motion, solver, scenario.accuracy.tip, monitor, sink)
     trajectory, length = moved.trajectory, scenario.scene.arm.total_length
-    unbalanced = unbalanced_message(trajectory, moved.solver.tolerance(length))
+    unbalanced = unbalanced_message(trajectory, moved.solver, length, scenario.solver.chooses_method)
     if unbalanced is not None:
         monitor.stop(Outcome.DIVERGED, unbalanced)
     end, message = _find_end(motion, trajectory)
