@@ -109,6 +109,13 @@ def test_cables_run_through_their_holes_to_their_anchor(motion: Log, tmp_path: P
     assert_close(holes[:, 1:, 1], columns["disk_y"][rows, :3] + offset * np.cos(theta))
 
 
+def test_a_sheathed_cable_is_drawn_from_its_start(motion: Log, tmp_path: Path) -> None:
+    sheathed = replace(motion, arm={**motion.arm, "start": np.array([2])})
+    holes = points(shown(sheathed, tmp_path)["/arm/cables/upper"])[:, 0]
+    whole = points(shown(motion, tmp_path)["/arm/cables/upper"])[:, 0]
+    assert_close(holes, whole[:, 2:])
+
+
 def test_a_settled_arm_lies_on_its_equilibrium(motion: Log, tmp_path: Path) -> None:
     entities = shown(motion, tmp_path)
     equilibrium, backbone = points(entities["/arm/equilibrium"]), points(entities["/arm/rim"])
