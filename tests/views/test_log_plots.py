@@ -1,6 +1,7 @@
 """Figures of logs: what is drawn where, its units, and that it can be told apart in black and white."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,9 +45,10 @@ def test_motion_is_drawn_over_time_with_units_on_every_axis(step: Log) -> None:
 def test_ramp_is_drawn_over_what_is_ramped(ramp: Log) -> None:
     (shapes,) = log_plots.picture(ramp, ["shapes"]).axes
     assert log_plots.picture(ramp, ["tip"]).axes[0].get_xlabel() == "tension (N)"
-    handles, labels = shapes.get_legend_handles_labels()
+    lines: list[Any]
+    lines, labels = shapes.get_legend_handles_labels()
     assert labels[:6] == ["0 N", "0.05 N", "0.1 N", "0.5 N", "1 N", "2 N"]
-    ends = np.array([np.asarray(getattr(line, "get_xydata")())[-1] for line in handles[:6]])  # noqa: B009
+    ends = np.array([line.get_xydata()[-1] for line in lines[:6]])
     np.testing.assert_allclose(ends[:, 1], 1e3 * ramp.equilibria["disk_y"][:, -1], atol=1e-9)
 
 
@@ -54,11 +56,9 @@ def test_ramp_is_drawn_over_what_is_ramped(ramp: Log) -> None:
 def test_no_two_lines_of_a_part_look_the_same_in_black_and_white(part: str, step: Log, ramp: Log) -> None:
     for log in (step, ramp):
         (axes,) = log_plots.picture(log, [part]).axes
-        looks = {
-            (str(getattr(line, "_dash_pattern")), str(line.get_marker()), line.get_linewidth())  # noqa: B009
-            for line in axes.get_legend_handles_labels()[0]
-        }
-        assert len(looks) == len(axes.get_legend_handles_labels()[0]) > 1
+        lines: list[Any] = axes.get_legend_handles_labels()[0]
+        looks = {(str(line._dash_pattern), str(line.get_marker()), line.get_linewidth()) for line in lines}
+        assert len(looks) == len(lines) > 1
 
 
 def test_shapes_are_those_at_the_times_asked_for(step: Log) -> None:

@@ -16,6 +16,11 @@ class Branch(NamedTuple):
     falling: bool
 
 
+def found_stable(points: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Rows that are not known to be unstable, booleans: a log may not say which are stable."""
+    return points["stable"].astype(bool) if "stable" in points else np.ones(len(points["point"]), dtype=bool)
+
+
 def directions(values: np.ndarray) -> np.ndarray:
     """Direction in which each value was reached: 1 rising, -1 falling; in a pause, as before it."""
     steps = np.sign(np.diff(values))
@@ -31,7 +36,7 @@ def branches(points: Mapping[str, np.ndarray], drive: np.ndarray) -> list[Branch
 
     Unstable ones are not said to fall, as a path turns back by itself there.
     """
-    stable, falls = points["stable"].astype(bool), directions(drive) < 0.0
+    stable, falls = found_stable(points), directions(drive) < 0.0
     kept = stable | (points["critical"] > 0)
 
     def kind(pair: tuple[int, int]) -> tuple[bool, bool, bool]:

@@ -8,7 +8,7 @@ from statics.support.plain_text import plain_line
 
 NOTE_WIDTH = 100
 """Largest number of characters in a line of a note."""
-HEADING_WIDTH = 10.0
+HEADING_WIDTH = 8.0
 """Largest number of characters in a line of a heading, for each inch of the figure's width."""
 HEADING_LINES = 3
 

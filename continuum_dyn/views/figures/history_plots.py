@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from continuum_dyn.record import Log
 from continuum_dyn.views.figures.axis_units import axis
-from continuum_dyn.views.figures.branches import branches, rows_falling
+from continuum_dyn.views.figures.branches import branches, found_stable, rows_falling
 from continuum_dyn.views.figures.log_series import Input, LogSeries
 from continuum_dyn.views.figures.looks import (
     BLUE,
@@ -142,12 +142,13 @@ def _marks(
     points: Mapping[str, np.ndarray], drive: np.ndarray
 ) -> list[tuple[np.ndarray, str, str, dict[str, Any]]]:
     """Which equilibria are marked: their label, marker and look."""
-    stable, back = points["stable"].astype(bool), np.zeros(len(drive), dtype=bool)
+    stable, back = found_stable(points), np.zeros(len(drive), dtype=bool)
     back[rows_falling(points, drive)] = True
-    rising = "stable, rising" if back.any() else "stable"
+    word = "stable" if "stable" in points else "equilibrium"
+    rising = f"{word}, rising" if back.any() else word
     return [
         (stable & ~back, rising, "o", {"color": "k", "ms": 4}),
-        (stable & back, "stable, falling", "v", {"color": BLUE, "ms": 5}),
+        (stable & back, f"{word}, falling", "v", {"color": BLUE, "ms": 5}),
         (~stable, "unstable", "o", {"color": "k", "mfc": "w", "ms": 4}),
         (points["critical"] == 1, "fold", "s", {"color": VERMILION, "ms": 6}),
         (points["critical"] == 2, "branching", "D", {"color": VERMILION, "ms": 6}),

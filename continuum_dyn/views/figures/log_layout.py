@@ -1,7 +1,7 @@
 """Places and sizes of the panels of a log's figure, from the shape of what is drawn to scale."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 WIDTH = 7.6
 """Width of a figure whose shapes are wide, inches."""
@@ -24,7 +24,7 @@ class Layout(NamedTuple):
     The legend of the shapes is below them, or else at their right.
     """
 
-    mosaic: list[list[str]]
+    mosaic: list[Any]
     widths: list[float]
     heights: list[float]
     size: tuple[float, float]

@@ -39,8 +39,9 @@ def picture(log: Log, parts: Sequence[str] = (), at: Sequence[float] = (), stret
         panels = _panels(log, series, shapes, parts)
         layout = layout_of(list(panels), STRETCHED_BOX if stretch else box(log, series, rows))
         figure = Figure(figsize=layout.size, layout="constrained")
-        ratios = {"width_ratios": layout.widths, "height_ratios": layout.heights}
-        axes: dict[str, Any] = figure.subplot_mosaic(layout.mosaic, **ratios)
+        axes: dict[str, Any] = figure.subplot_mosaic(
+            layout.mosaic, width_ratios=layout.widths, height_ratios=layout.heights
+        )
         for name, draw in panels.items():
             draw(axes[name])
         if "shapes" in panels:

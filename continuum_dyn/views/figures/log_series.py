@@ -7,6 +7,7 @@ import numpy as np
 
 from continuum_dyn.record import Log
 from continuum_dyn.views.figures.axis_units import Axis, axis
+from continuum_dyn.views.figures.looks import without_math
 from statics.errors import InputError
 
 LARGEST = 1e100
@@ -31,7 +32,7 @@ class LogSeries(NamedTuple):
     def axis(self) -> Axis:
         """The axis of ``values``."""
         words = self.quantity.replace("_", " ")
-        return axis(self.quantity, self.values, f"{words} of {self.of}" if self.of else words)
+        return axis(self.quantity, self.values, f"{words} of {without_math(self.of)}" if self.of else words)
 
     @property
     def tip(self) -> np.ndarray:

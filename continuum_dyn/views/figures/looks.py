@@ -15,7 +15,7 @@ COLORS = ("k", BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 """Colours of lines that share an axis, in order of use."""
 LINES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)))
 MARKERS = ("o", "s", "^", "D", "v", "x")
-LETTERS: dict[str, Any] = {
+LETTERS: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.titlesize": 10.0,
     "figure.titlesize": 12.0,
@@ -36,13 +36,16 @@ LONGEST_NAME = 18
 """Largest number of letters of a name in a legend."""
 
 
+def without_math(text: str) -> str:
+    """A text on one line in which dollar signs begin no formula."""
+    return plain_line(text).replace("$", r"\$")
+
+
 def legend_labels(names: Sequence[str]) -> list[str]:
     """Labels for a legend, short and not too many; a label that begins with "_" is not in the legend."""
-    labels = [
-        shorten(plain_line(name), LONGEST_NAME, placeholder="...").lstrip("_") or "..." for name in names
-    ]
-    if len(labels) > MOST_NAMED:
-        labels[MOST_NAMED - 1 :] = [f"{len(labels) - MOST_NAMED + 1} more"] + ["_"] * (
-            len(labels) - MOST_NAMED
-        )
+    short = [shorten(plain_line(name), LONGEST_NAME, placeholder="...") for name in names]
+    labels = [without_math(name.lstrip("_") or "...") for name in short]
+    beyond = len(labels) - MOST_NAMED
+    if beyond > 0:
+        labels[MOST_NAMED - 1 :] = [f"{beyond + 1} more"] + ["_"] * beyond
     return labels

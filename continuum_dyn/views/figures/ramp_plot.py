@@ -12,7 +12,7 @@ from continuum_dyn.answers.ramp import RampAnswers, TipPath
 from continuum_dyn.views.figures.axis_units import Axis, axis
 from continuum_dyn.views.figures.branches import directions
 from continuum_dyn.views.figures.heading import set_heading
-from continuum_dyn.views.figures.looks import BLUE, LETTERS, VERMILION
+from continuum_dyn.views.figures.looks import BLUE, LETTERS, VERMILION, without_math
 from statics.quantities import QUANTITIES
 
 MARKS = 8
@@ -31,7 +31,7 @@ def ramp(title: str, found: RampAnswers) -> Figure:
         below = ["lag", "rates"] if found.motion is not None else []
         size = 5.0 if len(above + below) == 1 else 8.6, 3.4 if not below else 6.4
         figure = Figure(figsize=size, layout="constrained")
-        rows = [row * (2 // len(row)) for row in (above, below) if row]
+        rows: list[Any] = [row * (2 // len(row)) for row in (above, below) if row]
         axes: dict[str, Any] = figure.subplot_mosaic(rows)
         for name in above + below:
             panels[name](axes[name], found)
@@ -47,7 +47,7 @@ def _along(found: RampAnswers, path: TipPath) -> np.ndarray:
 
 
 def _drive_axis(found: RampAnswers) -> Axis:
-    words = f"{found.drive.quantity.replace('_', ' ')} of {found.drive.of}"
+    words = f"{found.drive.quantity.replace('_', ' ')} of {without_math(found.drive.of)}"
     return axis(found.drive.quantity, found.drive.values, words)
 
 
@@ -136,5 +136,5 @@ def _draw_rates(axes: Any, found: RampAnswers) -> None:
         scale.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         scale.set_major_formatter("{x:g}")
         scale.set_minor_formatter(NullFormatter())
-    axes.set_xlabel(f"{words} of {found.drive.of} ({found.drive.rate_unit})")
+    axes.set_xlabel(f"{words} of {without_math(found.drive.of)} ({found.drive.rate_unit})")
     axes.legend()

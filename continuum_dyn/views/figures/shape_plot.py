@@ -12,7 +12,7 @@ from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.views.figures.arm_drawing import draw_cables, draw_disks, draw_loads
 from continuum_dyn.views.figures.axis_units import axis
 from continuum_dyn.views.figures.backbone import backbone, disk_reach, poses
-from continuum_dyn.views.figures.branches import rows_falling
+from continuum_dyn.views.figures.branches import found_stable, rows_falling
 from continuum_dyn.views.figures.loads import acting_loads
 from continuum_dyn.views.figures.log_series import LogSeries
 from continuum_dyn.views.figures.looks import MARKERS, VERMILION
@@ -110,7 +110,7 @@ def value_labels(series: LogSeries, rows: Sequence[int]) -> list[str]:
     ]
     if not series.rest:
         return labels
-    falling, stable = rows_falling(series.columns, series.values), series.columns["stable"]
+    falling, stable = rows_falling(series.columns, series.values), found_stable(series.columns)
     endings = ["" if stable[row] else ", unstable" for row in rows]
     endings = [", falling" if row in falling else end for row, end in zip(rows, endings, strict=True)]
     return [label + ending for label, ending in zip(labels, endings, strict=True)]
