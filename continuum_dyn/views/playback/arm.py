@@ -106,7 +106,7 @@ def _core(playback: Playback, rows: np.ndarray, measures: Measures) -> dict[str,
 def _cables(
     playback: Playback, rows: np.ndarray, measures: Measures, centre: np.ndarray, across: np.ndarray
 ) -> dict[str, Drawn]:
-    """Each cable through its holes, from its start to its anchor: as wide as its tension, and dashed while it has none."""
+    """Each cable from its start to its anchor: as wide as its tension, and dashed while it has none."""
     arm = playback.log.arm
     parts: dict[str, Lines] = {}
     cables = zip(
