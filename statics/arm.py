@@ -11,8 +11,8 @@ Positive senses, everywhere in the program::
         +-----------------------> x
 
 A cable on the +y side bends the arm towards +y. Disks and segments count from 1 at the base. Segment i
-ends in node i: the centre of disk i, or, with ``subsegments`` of them from disk to disk, every so-many-th
-node is a disk's centre and the others are points of the core.
+ends in node i: the centre of disk i or, with ``subsegments`` segments from disk to disk, every
+``subsegments``-th node is the centre of a disk, and the others are points of the core.
 """
 
 from collections import Counter
@@ -90,7 +90,7 @@ MassList = Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1)]
 class PerDisk:
     """Numbers of an arm whose disks, or the cores before them, differ: one for each disk, from the base on.
 
-    What is given here beats the arm's one number of that name.
+    They override the arm's single number of that name.
     """
 
     disk_spacing: PositiveList | None = None
@@ -120,7 +120,7 @@ class Payload:
 class Base:
     """Mount of the arm: the core starts at (x, y), m, at an ``angle`` (rad) to the x axis.
 
-    One that ``moves`` is there at the start, and what it does then is an input of the motion.
+    If it ``moves``, this is its pose at the start, and its motion is an input.
     """
 
     x: float = 0.0
@@ -220,7 +220,7 @@ class Arm:
 
     @classmethod
     def preset(cls, name: str, **changes: Any) -> "Arm":
-        """An arm from the literature; what is given in ``changes`` beats the preset.
+        """An arm from the literature; ``changes`` override the preset.
 
         Raises ``InputError`` for a name that is not a preset.
         """
@@ -400,5 +400,5 @@ class Arm:
         return (of_segments + np.append(of_segments[1:], 0.0)) / 2
 
     def _core_ends(self) -> np.ndarray:
-        """The part of the core's mass whose place of quadrature is a node, shape (segments,), kg."""
+        """The part of the core's mass at quadrature points that are nodes, shape (segments,), kg."""
         return AT_END * (self.core_masses + np.append(self.core_masses[1:], 0.0))

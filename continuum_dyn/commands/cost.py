@@ -25,8 +25,9 @@ def cost(
     """Show the computing time that accuracy costs.
 
     Runs the motion by every method over a range of tolerances, on finer and finer meshes, and without each
-    of its effects. Prints error, time and work, and the cheapest method for each error. Writes
-    DIR/NAME_cost.csv, NAME_cost_mesh.csv, NAME_cost.h5 and NAME_cost.png.
+    of its effects. Prints error, least time and work, and the cheapest method for each error: that of least
+    work, weighted with its method's time for an evaluation. Writes DIR/NAME_cost.csv, NAME_cost_mesh.csv,
+    NAME_cost.h5 and NAME_cost.png.
     """
     from continuum_dyn.experiments.cost import measure
     from continuum_dyn.experiments.cost_file import write_cost
@@ -124,7 +125,8 @@ def _effect_table(measured: "Cost") -> Any:
 
 
 def _frontier_table(measured: "Cost") -> Any:
-    frontier = plain_table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
+    title = "\nCheapest way to a tip error, by work at each method's time for an evaluation"
+    frontier = plain_table(title, "below", "method", "rtol", "time", "work")
     for target, p in measured.frontier().items():
         if p is None:
             frontier.add_row(length(target), "not reached")

@@ -1,5 +1,6 @@
 """``continuum-dyn explain``: the equations that a scenario simulates."""
 
+from collections.abc import Callable
 from textwrap import fill
 from typing import Annotated, Any
 
@@ -7,6 +8,7 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Overrides, ScenarioFile
 from continuum_dyn.commands.terminal.output import say
+from continuum_dyn.commands.terminal.show import with_status
 from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
@@ -60,7 +62,7 @@ def explain(
     for effect in scene.effects:
         line = f"  {effect.name:<{width}} on each {effect.site:<8} {effect.source}"
         say(fill(line, 79, subsequent_indent=" " * (width + 20)))
-    found = _modes(scenario)
+    found = with_status(scenario.title, lambda progress: _modes(scenario, progress))
     show_additions(scenario, None if isinstance(found, InputError) else found)
     _print_method(scenario)
     if isinstance(found, InputError):
@@ -95,10 +97,11 @@ def _print_base(arm: Any) -> None:
     say(f"The base {'moves, and starts' if arm.base_moves else 'is'} {where}.\n")
 
 
-def _modes(scenario: Any) -> Any:
+def _modes(scenario: Any, progress: Callable[[str], None]) -> Any:
     """The modes at rest, or the reason why there are none."""
     from continuum_dyn.modes import modes_at_rest
 
+    progress("modes at rest")
     try:
         return modes_at_rest(scenario)
     except InputError as reason:
@@ -110,16 +113,27 @@ def _print_method(scenario: Any) -> None:
 
     if scenario.study.motion is None or not scenario.solver.chooses_method:
         return
-    choice = Motion(scenario).choose_method()
+    choice = with_status(scenario.title, lambda progress: _choose(Motion(scenario), progress))
     say("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 
-def _print_equations(scene: Any, latex: bool) -> None:
+def _choose(motion: Any, progress: Callable[[str], None]) -> Any:
+    progress("choice of the method")
+    return motion.choose_method()
+
+
+def _derive(structure: Any, progress: Callable[[str], None]) -> Any:
     from continuum_dyn.equations.virtual_power import derive_dynamics
+
+    progress("equations")
+    return derive_dynamics(structure)
+
+
+def _print_equations(scene: Any, latex: bool) -> None:
     from statics.derivation.virtual_work import collect
 
     structure = scene.structure
-    forces = derive_dynamics(structure)
+    forces = with_status("explain", lambda progress: _derive(structure, progress))
     write = _latex if latex else _text
     used: set[str] = set()
     say("\nOne segment: its far end seen from its near disk (Eq. 11)")

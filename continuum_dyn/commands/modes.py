@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.terminal.output import console, say
-from continuum_dyn.commands.terminal.show import make_folder, mode_row, plain_table
+from continuum_dyn.commands.terminal.show import make_folder, mode_row, plain_table, with_status
 from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def modes(
 
     scenario = load_scenario(file, overrides or ())
     make_folder(out)
-    found = modes_at_rest(scenario)
+    found = with_status(scenario.title, lambda _: modes_at_rest(scenario))
     stem = out / f"{file.stem}_modes"
     with defer_interruption():
         _write_csv(found, stem.with_suffix(".csv"))

@@ -8,7 +8,7 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder
 from continuum_dyn.commands.terminal.output import console, say
-from continuum_dyn.commands.terminal.show import make_folder, plain_table
+from continuum_dyn.commands.terminal.show import make_folder, plain_table, with_status
 from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def reproduce(
     from continuum_dyn.experiments.reproduce import reproduce as compute
     from continuum_dyn.views.figures import plots
 
-    found = compute(paper)
+    found = with_status(paper, lambda progress: compute(paper, progress))
     make_folder(out)
     with defer_interruption():
         _write_table_2(found, out / f"{paper}_table_2.csv")

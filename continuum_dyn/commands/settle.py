@@ -17,7 +17,7 @@ from continuum_dyn.commands.terminal.assertions import (
 )
 from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.pictures import save
-from continuum_dyn.commands.terminal.show import duration, length, make_folder, plain_table
+from continuum_dyn.commands.terminal.show import duration, length, make_folder, plain_table, with_status
 
 if TYPE_CHECKING:
     from continuum_dyn.answers.settling import Settling
@@ -48,7 +48,7 @@ def settle(
 
     asked = parse(assertions or [], FIGURES)
     read = read_log(log)
-    found = settling(read)
+    found = with_status(read.title, lambda _: settling(read))
     folder = out or log.parent
     make_folder(folder)
     picture = folder / f"{log.stem}_settle.png"

@@ -1,4 +1,4 @@
-"""Writes a run as a log in one go: the log is complete or missing."""
+"""Writing of a run as a log in one step: the log is complete or missing."""
 
 import platform
 from collections.abc import Mapping, Sequence

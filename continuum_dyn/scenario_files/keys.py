@@ -14,7 +14,7 @@ _HEADED = re.compile(r"^\[\w+\]: ")
 
 
 class Key(NamedTuple):
-    """A key of a table; ``value`` says what it may be, in words, in which what is typed stands in `ticks`.
+    """A key of a table; ``value`` describes its allowed values, with literal text in `ticks`.
 
     ``example`` is a line of a scenario file, or the header of the table that the key stands for.
     """
@@ -27,7 +27,7 @@ class Key(NamedTuple):
 
 
 class KeyTable(NamedTuple):
-    """A table of a scenario file, or one kind of it, with what it is for and its keys.
+    """A table of a scenario file, or one kind of it, with its purpose and its keys.
 
     ``example`` is the line that an effect or a profile takes in a file, otherwise empty.
     """
@@ -43,7 +43,7 @@ def key_tables() -> list[KeyTable]:
     schema = json_schema()
     definitions = schema["$defs"]
     of_file = keys_of(schema, definitions, "file")
-    found = [KeyTable("the file", "What stands above all tables, and the tables.", of_file)]
+    found = [KeyTable("the file", "Keys above all tables, and the tables.", of_file)]
     for name, key in schema["properties"].items():
         if name == "effects":
             found += list(_effects(definitions))
@@ -57,7 +57,7 @@ def key_tables() -> list[KeyTable]:
 
 
 def _materials() -> KeyTable:
-    """Materials in place of keys: where the figures of each are from, and what they are."""
+    """Materials as a table of keys: the figures of each, and their source."""
     rows = (
         Key(
             name,

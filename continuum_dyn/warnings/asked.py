@@ -1,8 +1,10 @@
-"""Requests that come to nothing: quantities without an effect, drives without a change, studies in vain."""
+"""Warnings about requests without effect: unused quantities, drives without a change, studies in vain."""
 
 from collections.abc import Iterator
 from math import inf
 from typing import Any
+
+import numpy as np
 
 from continuum_dyn.scenario.profiles import Profile, change_times
 from continuum_dyn.scenario.scenario import Scenario, dissipated_by
@@ -25,8 +27,10 @@ def unused_numbers(scenario: Scenario) -> Iterator[str]:
     for name, effects in USED_BY.items():
         preset = getattr(arm, name) == RONE2012.get(name)
         of_core = name == "area" and arm.core_density is not None
-        if arm.knows(name) and not (preset or of_core or any(map(scene.has, effects))):
-            would = " and ".join(effects)
+        each = getattr(arm.each, name, None)
+        is_zero = not np.any(getattr(arm, name) if each is None else each)
+        if arm.knows(name) and not is_zero and not (preset or of_core or any(map(scene.has, effects))):
+            would = " or ".join(filter(None, (", ".join(effects[:-1]), effects[-1])))
             yield f"[arm] {name} is given, and no effect uses it: {would} would. Add one, or leave it out."
 
 

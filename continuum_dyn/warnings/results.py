@@ -17,11 +17,8 @@ if TYPE_CHECKING:
 
 LARGEST_STRAIN = 0.02
 """Bending strain above which few cores stay elastic."""
-UNSEEN = 0.05
-"""Largest change of a coordinate between samples not explained by its rates, over the travel."""
-
-OFTEN = 8
-"""Number of intervals with such a change above which it is more than the effect of a jump."""
+STILL = 1e-9
+"""Travel over the arm's length below which nothing moves: rounding leaves some."""
 
 
 def bending_strain(run: "Run") -> float | None:
@@ -50,9 +47,10 @@ def strained(run: "Run") -> Iterator[str]:
 
 def coarser_than_the_travel(run: "Run") -> Iterator[str]:
     """Warn of tolerances that are larger than all that moves."""
-    if run.trajectory is None or run.trajectory.travel == 0.0:
+    scenario = run.scenario
+    if run.trajectory is None or run.trajectory.travel < STILL * scenario.scene.arm.total_length:
         return
-    travel, scenario = run.trajectory.travel, run.scenario
+    travel = run.trajectory.travel
     named = []
     if scenario.study.settles:
         named.append(("settled_within", scenario.settled_within))
@@ -60,10 +58,10 @@ def coarser_than_the_travel(run: "Run") -> Iterator[str]:
         named.append(("[accuracy] tip", scenario.accuracy.tip))
     for name, distance in named:
         if distance > travel:
+            in_mm = f" {distance:g} mm are {distance / 1e3:g} m." if distance / 1e3 < travel else ""
             yield (
-                f"{name} = {distance:.3g} m is above all that the arm moves, {travel:.3g} m: it says "
-                "nothing. "
-                f"{distance:g} mm are {distance / 1e3:g} m."
+                f"{name} = {distance:.3g} m is above all that the arm moves, {travel:.3g} m: it says nothing."
+                f"{in_mm} Give less than that."
             )
 
 

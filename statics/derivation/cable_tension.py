@@ -1,4 +1,4 @@
-"""The tension along a cable that rubs at its holes, or that is driven by its length.
+"""Tension along a cable with friction at its holes, or driven by its length.
 
 Such a tension couples all segments that the cable passes. With Lambda_i the cable's length beyond the near
 hole of span i, Lambda_1 all of it, the drive's tension is
@@ -10,7 +10,7 @@ and at a hole that turns it by beta (Euler 1769) it changes to
     T_i = T_{i-1} exp(-mu |beta| tanh s),   s = -Lambda_i' / slip speed
 
 in motion; at rest s = (Lambda_i before - Lambda_i) / slip length, where "before" is the equilibrium that the
-arm comes from. tanh stands for the sign of the slip: as it passes through zero the cable sticks, and creeps.
+arm comes from. tanh approximates the sign of the slip: near zero the cable sticks, that is, it creeps.
 """
 
 from typing import Any

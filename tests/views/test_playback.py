@@ -62,7 +62,7 @@ def test_series_of_a_motion_are_those_of_the_log(motion: Log, tmp_path: Path) ->
     entities, columns = shown(motion, tmp_path), motion.trajectory
     for name, expected in {
         "tension": columns["tension"],
-        "energy": np.column_stack([columns[name] - columns[name][0] for name in LEDGER]),
+        "energy": 1e3 * np.column_stack([columns[name] - columns[name][0] for name in LEDGER]),  # mJ
         "power": np.column_stack([columns["input_power"], columns["dissipated_power"]]),
         "curvature": columns["curvature"],
     }.items():
