@@ -15,11 +15,11 @@ from statics.outcome import Outcome
 from statics.scene import Scene
 
 MOST_COORDINATES = 400
-"""Most coordinates of an arm whose modes are asked for: they are all found at once, in some seconds."""
+"""Largest number of coordinates for modes: all are computed together, in some seconds."""
 FEW_COORDINATES = 64
 """Coordinates up to which rates are found for a table, where each effect left out is another structure."""
 MOST_DENSE = 128
-"""Most coordinates whose linearized motion is written out as a matrix."""
+"""Largest number of coordinates whose linearized motion is written out as a matrix."""
 SMALL = 1e-6
 """Change of a bend angle (rad) by which accelerations are differenced."""
 NEUTRAL = 1e-7
@@ -38,7 +38,7 @@ def rates(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[float, flo
 
 
 def linearized(dynamics: Dynamics, y: np.ndarray, span: Interval) -> np.ndarray:
-    """d(rate)/dy. Raises ``InputError`` where it is beyond floating point."""
+    """d(rate)/dy. Raises ``InputError`` if it is beyond floating point."""
     matrix = dynamics.jacobian(span.start, y, span)
     if not np.isfinite(matrix).all():
         raise InputError(
@@ -153,7 +153,7 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
 
 
 def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None:
-    """Least and largest rate (1/s) about rest without an effect; None where there is no such rest."""
+    """Least and largest rate (1/s) about rest without an effect; None if there is no such rest."""
     try:
         without = scenario.without(effect)
         with np.errstate(all="ignore"):
@@ -182,7 +182,7 @@ class _Motion(NamedTuple):
 def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]:
     """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first.
 
-    Raises ``InputError`` where the fastest motion is too fast for the slowest to be seen beside it.
+    Raises ``InputError`` if the fastest motion is too fast for the slowest to be seen beside it.
     """
     size, scales = dynamics.size, dynamics.scales()[: dynamics.size]
     jacobian = linearized(dynamics, y, span)[: 2 * size, : 2 * size]
@@ -194,7 +194,7 @@ def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]
 
 
 def _free(accelerations: np.ndarray, scales: np.ndarray) -> list[_Motion]:
-    """Modes of what rates do not change, from d(acceleration)/dq: its eigenvalues are squares of rates.
+    """Modes of an undamped scene, from d(acceleration)/dq: its eigenvalues are squares of rates.
 
     One below zero swings, one above diverges. A pair of conjugate ones, which only loads without a potential
     can bring about, flutters: it swings twice, once growing and once dying away.

@@ -64,7 +64,7 @@ class Cable:
     def holes(self, disks: int) -> np.ndarray:
         """Offsets of its holes in the base and in each disk, shape (disks + 1,), m; the last one goes on."""
         given = np.atleast_1d(np.asarray(self.hole_offset, dtype=float))
-        return np.pad(given, (0, max(0, disks + 1 - given.size)), mode="edge")
+        return given[np.minimum(np.arange(max(disks + 1, given.size)), given.size - 1)]
 
 
 class CableKind(NamedTuple):
@@ -144,7 +144,7 @@ RONE2012_HOLE_OFFSET = 0.008
 
 @dataclass(frozen=True, config=STRICT)
 class Arm:
-    """A planar arm. A number may stay None where no effect of the scene needs it; ``each`` has what differs.
+    """A planar arm. A number may stay None if no effect of the scene needs it; ``each`` has what differs.
 
     ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` gives the
     core a mass of its own, spread along each segment; ``disk_mass`` is then a disk's alone. Without a
@@ -221,9 +221,23 @@ class Arm:
         return cls(**{**PRESETS[name], **changes})
 
     @staticmethod
-    def round_core(radius: float) -> dict[str, float]:
-        """Area and second moment of a round core of that radius (m), as arguments of ``Arm``."""
-        return {"area": pi * radius**2, "second_moment": pi * radius**4 / 4}
+    def round_core(radius: float, inner_radius: float = 0.0) -> dict[str, float]:
+        """Area and second moment of a round core or a tube of these radii (m), as arguments of ``Arm``."""
+        return {
+            "area": pi * (radius**2 - inner_radius**2),
+            "second_moment": pi * (radius**4 - inner_radius**4) / 4,
+        }
+
+    @staticmethod
+    def round_disk(
+        mass: float, radius: float, thickness: float, inner_radius: float = 0.0
+    ) -> dict[str, float]:
+        """Mass (kg) and in-plane moment of inertia (kg m^2) of a disk or a ring, as arguments of ``Arm``.
+
+        Of a body of even density, these radii and that thickness (m): m (3 (R^2 + r^2) + h^2) / 12.
+        """
+        squares = 3 * (radius**2 + inner_radius**2) + thickness**2
+        return {"disk_mass": mass, "disk_inertia": mass * squares / 12}
 
     def knows(self, name: str) -> bool:
         """Whether the number of that name is given, once or for each disk."""
@@ -328,7 +342,7 @@ class Arm:
         return max(Counter(payload.disk for payload in self.payloads).values(), default=0)
 
     def _payload_columns(self) -> dict[str, np.ndarray]:
-        """The first, second, ... payload of every node, shape (segments,); zero where there is none."""
+        """The first, second, ... payload of every node, shape (segments,); zero if there is none."""
         names = ("payload_mass", "payload_inertia", "payload_offset_x", "payload_offset_y")
         values = np.zeros((self.payloads_on_a_disk, len(names), self.disks))
         placed = Counter[int]()

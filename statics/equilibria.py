@@ -25,11 +25,11 @@ MAX_ITERATIONS = 200
 MOST_STICKING = 100
 """Largest number of iterations of a search for cables that stick."""
 SHORTEST_STEP = 1 / 8
-"""Shortest step from the inputs before to those asked, over the whole, of such a search in steps."""
+"""Shortest step of such a search from the inputs before to the requested ones, over the whole distance."""
 MORE_STEPS = 5
-"""Most further steps of a search whose last step was small, and left a force unbalanced."""
+"""Largest number of further steps of a search whose last step was small but left a force unbalanced."""
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
-"""Slip lengths over the arm's length that a release goes through, from soft to what they are."""
+"""Slip lengths of a release over the arm's length, from soft to the actual one."""
 
 _OUTCOMES = {
     search.STABLE: Outcome.COMPLETED,
@@ -56,8 +56,8 @@ class Equilibrium:
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
     loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
     ``base``; SI units. ``inputs`` are the scene's, without
-    motion; ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
-    ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
+    motion; ``tension`` is that at the base and ``cable_displacement`` the length drawn in there, m.
+    ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None if
     it is not known: under loads without a potential, until the modes of small motion have been asked.
     ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
     ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from
@@ -116,7 +116,7 @@ class Equilibrium:
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk.
 
-        Raises ``NotFoundError`` where no equilibrium was found: there the arrays hold where the search ended.
+        Raises ``NotFoundError`` if no equilibrium was found: there the arrays hold where the search ended.
         """
         if not self.found:
             raise NotFoundError(
@@ -141,14 +141,14 @@ class Equilibrium:
 
 
 def _outcome(ended: int, negative: int) -> Outcome:
-    """Outcome of a search, with the number of unstable directions where it is known."""
+    """Outcome of a search, with the number of unstable directions if it is known."""
     if ended == search.BALANCED and negative > 0:
         return Outcome.UNSTABLE_EQUILIBRIUM
     return _OUTCOMES[ended]
 
 
 class Slip(IntEnum):
-    """Which way cables that rub have all slipped: the two branches of a ramp with friction."""
+    """Direction in which all cables with friction have slipped: the two branches of a ramp."""
 
     DRAWN_IN = 1
     LET_OUT = -1
@@ -217,7 +217,7 @@ class StaticSolver:
         return replace(best, iterations=iterations)
 
     def _release(self, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The equilibrium that the arm comes to if let go, through softer slips of cables that rub."""
+        """The equilibrium that a released arm reaches, through larger slip lengths."""
         arm, left, q = self.scene.arm, list[Equilibrium](), start.copy()
         ended, iterations, passes = search.NOT_FOUND, 0, self.kernel.passes
         for slip_part in SLIP_PARTS if self.rubbing.size else (0.0,):
@@ -237,10 +237,10 @@ class StaticSolver:
             ended, more = self._find(q, inputs, MAX_ITERATIONS)
             iterations += more
             found = self.examine(q, inputs, ended, iterations)
-        return replace(found, left=tuple(left))
+        return replace(found, left=tuple(left)) if left else found
 
     def _stick(self, start: np.ndarray, inputs: np.ndarray, *, exactly: bool) -> Equilibrium:
-        """The equilibrium of cables that rub, from where they were: they stick, or slip from there.
+        """The equilibrium of cables with friction, which stick or slip from their earlier position.
 
         An exact search takes a few times as long for an iteration, and finds what friction couples strongly.
         """
@@ -254,7 +254,7 @@ class StaticSolver:
         return self.examine(q, inputs, ended, iterations)
 
     def _stick_step_by_step(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The equilibrium as of ``_stick``, by way of others between the inputs before and these.
+        """The equilibrium as from ``_stick``, through intermediate inputs from the ones before.
 
         All of them remember the one before, so that where the steps are does not matter.
         """
@@ -278,20 +278,18 @@ class StaticSolver:
         return find(self.kernel.passes, q, *numbers, most)
 
     def examine(self, q: np.ndarray, inputs: np.ndarray, ended: int, iterations: int = 0) -> Equilibrium:
-        """All that is told of coordinates, shape (segments, dofs), at which a search has ``ended``."""
+        """Equilibrium at coordinates, shape (segments, dofs), at which a search has ``ended``."""
         arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         examine = newton.examine_stability if self.kernel.conservative else pseudo_transient.examine_balance
-        elastic, gravity, residual, negative = examine(
-            self.kernel.passes, q, inputs, self.segments, self.disks, pose
+        elastic, gravity, residual, negative, balanced = examine(
+            self.kernel.passes, q, inputs, self.segments, self.disks, arm.rest_length, pose
         )
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         driven = self.scene.driven_by(inputs, disk_x, disk_y, disk_theta)
-        numbers = (q, pose, driven["tension"], driven["cable_displacement"], [elastic, gravity, residual])
-        if not all(np.isfinite(values).all() for values in numbers) or (
-            ended in _FOUND and not self._is_balanced(q, inputs)
-        ):
+        numbers = (q, pose, driven["tension"], driven["cable_displacement"], (elastic, gravity, residual))
+        if (ended in _FOUND and not balanced) or not np.isfinite(np.concatenate(numbers, axis=None)).all():
             ended = search.NOT_FOUND
         return Equilibrium(
             outcome=_outcome(ended, negative),
@@ -310,13 +308,8 @@ class StaticSolver:
             residual=residual,
         )
 
-    def _is_balanced(self, q: np.ndarray, inputs: np.ndarray) -> bool:
-        """Whether the unbalanced forces are small in units of the forces that meet there."""
-        numbers = (inputs, self.segments, self.disks, self.scene.arm.rest_length)
-        return search.is_balanced(self.kernel.passes, q, *numbers)
-
     def _remember(self, before: "Equilibrium | Slip") -> None:
-        """Put where the cables slip from into the table."""
+        """Put the earlier lengths of the cables, from which they slip, into the table."""
         if not self.rubbing.size:
             return
         arm = self.scene.arm
@@ -329,7 +322,7 @@ class StaticSolver:
             self._set(f"length_before_{number}", np.repeat(beyond, arm.subsegments))
 
     def _set(self, name: str, values: np.ndarray) -> None:
-        """Fill the columns of a quantity, numbered or not, where the kernel has them."""
+        """Fill the columns of a quantity, numbered or not, if the kernel has them."""
         for column, known in enumerate(self.kernel.segment_columns):
             if known == name or known.rpartition("_")[0] == name:
                 self.segments[:, column] = values

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A named physical quantity; ``unit`` is SI, "1" where there is none.
+    """A named physical quantity; ``unit`` is SI, "1" if there is none.
 
-    ``letter`` stands for it in printed equations; it is the name itself where there is no customary one.
+    ``letter`` stands for it in printed equations; it is the name itself if there is no customary one.
     """
 
     name: str
@@ -30,10 +30,18 @@ disks                | n     | 1      | number of disks
 disk_spacing         | -     | m      | undeformed distance between neighbouring disks, along the core
 youngs_modulus       | E     | Pa     | Young's modulus E of the core
 core_radius          | -     | m      | radius of a round core; sets area and second_moment
+core_outer_radius    | -     | m      | outer radius of a tube that is the core; sets area and second_moment
+core_inner_radius    | -     | m      | inner radius of that tube
+core_material        | -     | 1      | material of the core; sets youngs_modulus and core_density
 area                 | A     | m^2    | cross-section area A of the core
 second_moment        | J     | m^4    | second moment of area J of the core about the bending axis
 disk_mass            | -     | kg     | mass of a disk, with the core around it unless core_density is given
 disk_inertia         | -     | kg m^2 | moment of inertia of a disk about an in-plane diameter
+disk_radius          | -     | m      | radius of a disk; sets its inertia, and its mass with disk_density
+disk_inner_radius    | -     | m      | radius of a disk's central hole
+disk_thickness       | -     | m      | thickness of a disk, along the core
+disk_density         | -     | kg/m^3 | density of a disk
+disk_material        | -     | 1      | material of the disks; sets disk_density
 core_density         | -     | kg/m^3 | density of the core, which then has a mass of its own all along
 subsegments          | -     | 1      | number of segments from disk to disk
 reference_curvature  | k_0   | 1/m    | curvature of the unloaded core

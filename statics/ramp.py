@@ -15,11 +15,11 @@ from statics.outcome import Outcome
 from statics.scene import Scene
 
 SMOOTH = 0.25
-"""Difference of a path's slopes at two points from the way between them, over it: no closer look below."""
+"""Largest difference of a path's slopes at two points from the line between them, over the line's slope."""
 SAME = 1e-6
 """Root of the summed squares of the changes of bend angle, rad, below which two equilibria are the same."""
 TOUCHING = 1e-3
-"""The same for ends of two paths that meet where one branches off the other: the matrix is singular there."""
+"""Such a change below which two paths meet at a branching, where the matrix is singular."""
 
 
 def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
@@ -56,7 +56,7 @@ def ramp(
 def _come_to_step_by_step(
     solver: StaticSolver, inputs: np.ndarray, before: Equilibrium | Slip
 ) -> Equilibrium | None:
-    """The stable equilibrium that the way to inputs ends in, if it does: a search from afar may miss it.
+    """The stable equilibrium at the end of the path to the inputs, if any: a search from afar may miss it.
 
     Close to the limit the search's long steps run into it.
     """
@@ -69,7 +69,7 @@ def _come_to_step_by_step(
 def limit_on_the_way(
     solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None
 ) -> Equilibrium | None:
-    """The equilibrium at which the way to inputs that have none comes to a geometric limit, if it does.
+    """The equilibrium at which the path to inputs without one reaches a geometric limit, if it does.
 
     The way leads from ``start``, or from slack cables and no loads that change.
     """
@@ -116,7 +116,7 @@ def _branches_off(solver: StaticSolver, lost: Path, point: Equilibrium) -> bool:
 
 
 def _on_one_smooth_path(arc: ArcLength, before: Equilibrium, point: Equilibrium) -> bool:
-    """Whether both slopes of the path are nearly those of the straight way between the two."""
+    """Whether both slopes of the path are nearly that of the straight line between the two."""
     way = point.coordinates - before.coordinates
     length = np.sqrt(arc.inner(way, way))
     if length < SAME and not np.array_equal(before.inputs, point.inputs):

@@ -1,6 +1,6 @@
 """The structure of a scene: all that its equations are derived from, and so the key of its kernels.
 
-Numbers are no part of it: a changed stiffness never derives anything anew, a changed equation always does.
+Numbers are no part of it: a changed stiffness never causes a new derivation, a changed equation always does.
 """
 
 import hashlib

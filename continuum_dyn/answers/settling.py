@@ -97,13 +97,13 @@ def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
     start = CubicSpline(motion["time"], tip)(begin)
     line = _place_of_rest(log) - start
     travel = float(np.hypot(*line))
-    if travel < NO_TRAVEL * log.arm["disks"] * log.arm["disk_spacing"]:
+    if travel < NO_TRAVEL * log.arm_length:
         raise InputError(f"{log.path}: the tip is where it will rest from the start; it does not travel.")
     return (tip - start) @ line / travel, travel
 
 
 def _place_of_rest(log: Log) -> np.ndarray:
-    """The tip's place of rest as the run tells it, x and y, m: with friction, beside its last equilibrium."""
+    """Rest position of the tip from the log, x and y, m; with friction not the last equilibrium."""
     if "rest_x" in log.attributes:
         return np.array([log.attributes["rest_x"], log.attributes["rest_y"]])
     return np.array([log.equilibria[name][-1, -1] for name in ("disk_x", "disk_y")])

@@ -1,4 +1,4 @@
-"""``continuum-dyn explain``: what a scenario simulates, as equations."""
+"""``continuum-dyn explain``: the equations that a scenario simulates."""
 
 from collections.abc import Callable
 from textwrap import fill
@@ -30,9 +30,9 @@ def explain(
 ) -> None:
     """Show what each effect adds, the modes at rest, and the equations.
 
-    With --measure a motion is run without each effect in turn, to say which of them can be left out at the
-    accuracy that is asked for, and what time they cost. The first time each of these is compiled, which
-    takes up to half a minute.
+    With --measure the motion is run without each effect in turn, to show which effects can be left out at
+    the requested accuracy, and the time that they cost. The first time this compiles a scene for each effect,
+    which takes some ten seconds in all.
     """
     from continuum_dyn.commands.terminal.effect_tables import (
         show_additions,
@@ -146,7 +146,7 @@ def _print_equations(scene: Any, latex: bool) -> None:
 
 
 def _print_cable_laws(cables: Any, used: set[str]) -> None:
-    """The laws of tensions that hang together over all the segments that a cable passes."""
+    """Equations of the tensions that couple all segments that a cable passes."""
     if not cables:
         return
     say("\nTensions along a cable; Lambda: its length from a hole to its anchor")
@@ -185,7 +185,7 @@ def _letter(name: str) -> str:
 
 
 def _use_letters(value: Any, used: set[str], sigma: str) -> Any:
-    """The expression in the customary letters; ``sigma`` is the pattern for sigma_n(h), h = phi / 2."""
+    """Expression with the usual symbols; ``sigma`` is the pattern for sigma_n(h), h = phi / 2."""
     import sympy as sp
 
     from statics.derivation.sigma import Sigma

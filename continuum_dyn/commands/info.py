@@ -1,4 +1,4 @@
-"""``continuum-dyn info``: what a log holds."""
+"""``continuum-dyn info``: the contents of a log."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 def info(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="A log written by run.", show_default=False)],
     scenario: Annotated[
-        bool, typer.Option("--scenario", help="Print the text of its scenario, and nothing else.")
+        bool, typer.Option("--scenario", help="Print only the text of its scenario.")
     ] = False,
 ) -> None:
-    """Show what is inside a log: outcome, method, arm, and each dataset with its range.
+    """Show the contents of a log: outcome, method, arm, and each dataset with its range.
 
-    With --scenario the log gives back the file that it answers: info LOG --scenario > NAME.toml
+    With --scenario it prints the scenario file of the run: info LOG --scenario > NAME.toml
     """
     from continuum_dyn.record import read_log
 

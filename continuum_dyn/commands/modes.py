@@ -1,4 +1,4 @@
-"""``continuum-dyn modes``: how the arm at rest swings, and how fast that dies away."""
+"""``continuum-dyn modes``: frequencies, damping and shapes of small motions about rest."""
 
 import csv
 from pathlib import Path
@@ -35,9 +35,9 @@ def modes(
 ) -> None:
     """Show the modes of the arm at rest.
 
-    Small motions about the equilibrium that the scenario starts from: frequency, damping ratio, time to die
-    away, shape. The scene needs the effect inertia. Writes DIR/NAME_modes.csv, with the shapes of all modes,
-    and NAME_modes.png, with the first six.
+    These are small motions about the initial equilibrium: frequency, damping ratio, decay time, shape. The
+    scene needs the effect inertia. Writes DIR/NAME_modes.csv, with the shapes of all modes, and
+    NAME_modes.png, with the first six.
     """
     from continuum_dyn.modes import modes_at_rest
     from continuum_dyn.scenario_files.reading import load_scenario

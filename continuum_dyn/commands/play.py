@@ -1,4 +1,4 @@
-"""``continuum-dyn play``: look at logs in rerun."""
+"""``continuum-dyn play``: show logs in rerun."""
 
 from pathlib import Path
 from typing import Annotated
@@ -19,21 +19,23 @@ def play(
         list[Path],
         typer.Argument(
             metavar="FILE.h5...",
-            help="Logs written by run; several share one view.",
+            help="Logs written by run; several logs share one view.",
             show_default=False,
         ),
     ],
     web: Annotated[
-        bool, typer.Option("--web", help="Show it to a browser on this computer, until Ctrl-C.")
+        bool, typer.Option("--web", help="Show the logs in a browser on this computer, until Ctrl-C.")
     ] = False,
     save: Annotated[
         Path | None,
-        typer.Option("--save", metavar="FILE.rrd", help="Write the recording instead.", show_default=False),
+        typer.Option(
+            "--save", metavar="FILE.rrd", help="Write a recording instead of showing it.", show_default=False
+        ),
     ] = None,
 ) -> None:
-    """Play logs back in rerun: in its window, in a browser, or into a file for later.
+    """Play logs back in rerun: in its window, in a browser, or into a file.
 
-    Several logs run side by side along the same time, each in a colour of its own.
+    Several logs are shown side by side in the same time, each in its own colour.
     """
     if web and save is not None:
         raise InputError("--web shows the recording and --save keeps it in a file. Give one of them.")

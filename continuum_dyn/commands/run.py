@@ -1,4 +1,4 @@
-"""``continuum-dyn run``: answer scenarios and log them."""
+"""``continuum-dyn run``: simulate scenarios and log them."""
 
 import json
 import time
@@ -64,14 +64,14 @@ def run(
         typer.Option(metavar="NAME", help="Write the log of one file to DIR/NAME.h5.", show_default=False),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
-    live: Annotated[bool, typer.Option("--live", help="Show each in rerun while it runs.")] = False,
+    live: Annotated[bool, typer.Option("--live", help="Show each run in rerun as it goes.")] = False,
 ) -> None:
     """Simulate scenarios and log them.
 
     Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. With --set, a log of another scenario is kept: the
     next one is NAME_2.h5. The scenario of a log is run again, into DIR/NAME_again.h5, and both are compared.
     Exit status: 0 answered ("not settled" is an answer), 1 not
-    answered (no stable equilibrium, geometric limit, diverged, budget exceeded) or not the same as before,
+    answered (no stable equilibrium, geometric limit, diverged, budget exceeded) or different from the log,
     2 bad input, 130 interrupted.
     """
     jobs = _load(files, overrides or (), out)
@@ -124,7 +124,7 @@ def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
 
 
 def answer(job: Job, as_json: bool, live: bool = False) -> int:
-    """Answer a scenario, log it and tell of it; the exit status."""
+    """Answer a scenario, log it and print its results; return the exit status."""
     with defer_interruption():  # so that what was computed is logged
         report = _answer(job, as_json, live)
         if as_json:
@@ -165,7 +165,7 @@ def _answer(job: Job, quiet: bool, live: bool) -> dict[str, Any]:
 
 
 def _recording(log: "Log") -> tuple[Path | None, str]:
-    """The recording that is written beside a log; or none, and why."""
+    """The recording written beside a log, or None and the reason."""
     try:
         with naming_extras():
             from continuum_dyn.views.playback.recording import save
@@ -219,7 +219,7 @@ def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_t
 
 @contextmanager
 def _progress(title: str, quiet: bool) -> Iterator[Any]:
-    """A progress bar on a terminal; while kernels are compiled it only pulses, and says why."""
+    """A progress bar on a terminal; during compilation it only pulses, with a message."""
     screen = console(stderr=True)
     if quiet or not (screen.is_terminal and shows_progress()):
         yield None

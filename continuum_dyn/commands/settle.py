@@ -1,4 +1,4 @@
-"""``continuum-dyn settle``: how a motion comes to rest."""
+"""``continuum-dyn settle``: settling times and ring-down of a motion."""
 
 import json
 from pathlib import Path
@@ -37,10 +37,10 @@ def settle(
 ) -> None:
     """Show how the motion of a log settles.
 
-    After the last change of what drives the arm, along the straight way of its tip to where it rests:
-    rise time, overshoot, settling times; frequency and damping ratio of the ring-down, beside those of the
-    linear mode at that equilibrium; and the gap that is left. Writes DIR/NAME_settle.png. Exit status:
-    1 if an assertion does not hold.
+    Evaluates the motion after the last change of the inputs, along the straight line from the tip to its rest
+    position: rise time, overshoot, settling times; frequency and damping ratio of the ring-down, compared
+    with those of the linear mode at that equilibrium; and the remaining gap. Writes DIR/NAME_settle.png.
+    Exit status: 1 if an assertion does not hold.
     """
     from continuum_dyn.answers.settling import FIGURES, settling
     from continuum_dyn.record import read_log

@@ -65,7 +65,7 @@ class MeshPrice:
     Under the motion's last tensions; ``tip_error`` in m, ``angle_error`` in rad. ``limit_error`` is that of
     the tip extrapolated from this mesh and the one of half as many segments. ``seconds`` is the time of one
     equilibrium, ``iterations`` times segments its work; ``motion_seconds`` that of the whole motion, None
-    where nodes without mass forbid it.
+    if nodes without mass forbid it.
     """
 
     subsegments: int

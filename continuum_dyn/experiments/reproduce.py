@@ -63,7 +63,7 @@ class Shapes:
 
 @dataclass(frozen=True)
 class CoreSpread:
-    """The unactuated arm of the same mass with the core's part of it along the core, and not in the disks."""
+    """The unactuated arm with the core's mass distributed along the core instead of in the disks."""
 
     program: Equilibrium
     rod: RodShape
@@ -71,7 +71,7 @@ class CoreSpread:
 
 @dataclass(frozen=True)
 class Rone2012:
-    """Everything numeric in Rone and Ben-Tzvi 2012, computed again.
+    """All numerical results of Rone and Ben-Tzvi 2012, recomputed.
 
     ``unactuated`` is Fig. 3 and Table 2, ``figure_4`` has its tensions, ``ramp`` many from 0 to 2 N;
     ``unrounded`` is the unactuated arm with A and J of a core of 0.4 mm radius instead of Table 1's,
@@ -129,7 +129,7 @@ def with_core_spread(scene: Scene) -> Scene:
 
 
 def reproduce(paper: str, progress: Callable[[str], None] = lambda _: None) -> Rone2012:
-    """Compute every number of a paper again; ``progress`` receives the current step.
+    """Recompute every number of a paper; ``progress`` receives the current step.
 
     Raises ``InputError`` if the paper is not known.
     """

@@ -1,4 +1,4 @@
-"""Checks a log against the format: every place where it departs from it, in words.
+"""Check of a log against the format: a message for every difference.
 
 A file supplies numbers and texts alone: nothing of it is run, imported or unpickled, no other file is
 opened, and no more memory is taken than the file's size warrants.

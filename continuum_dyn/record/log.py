@@ -12,7 +12,7 @@ from statics.outcome import Outcome
 
 @dataclass(frozen=True)
 class Log:
-    """A log read back: arrays by glossary name; ``trajectory`` is empty where nothing moved.
+    """A log read back: arrays by glossary name; ``trajectory`` is empty without a motion.
 
     ``scenario`` is the text of the scenario's file, ``tables`` those of the CSV files that it names.
     ``attributes`` are the file's, ``counters`` what the solver counted. A log that is not ``complete`` is
@@ -32,3 +32,8 @@ class Log:
     equilibria: Mapping[str, np.ndarray]
     counters: Mapping[str, int]
     complete: bool
+
+    @property
+    def arm_length(self) -> float:
+        """Undeformed length of the arm, m; its ``disk_spacing`` is one number, or one for each disk."""
+        return float(np.mean(self.arm["disk_spacing"])) * self.arm["disks"]

@@ -33,7 +33,7 @@ class Interval:
 
 
 class Intervals(Sequence[Interval]):
-    """Consecutive intervals between ``edges`` (s), each made when it is asked for.
+    """Consecutive intervals between ``edges`` (s), each made when it is used: there may be a million.
 
     ``pieces`` are each profile's, shape (its pieces, 6); ``active`` their numbers in each interval, shape
     (profiles, intervals).

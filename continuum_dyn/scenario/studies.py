@@ -22,7 +22,7 @@ MAX_STORED = 20_000_000
 
 
 class StudyKind(ABC):
-    """Base of the studies: what others ask of each, answered for an arm at rest."""
+    """Base of the studies, with defaults for an arm at rest."""
 
     takes_lists: ClassVar[bool] = False
     """Whether drives are lists of values; otherwise they are profiles."""

@@ -5,6 +5,7 @@ from typing import Any
 
 from continuum_dyn.scenario.profiles import Constant, Profile
 from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario_files.arm_numbers import arm_numbers
 from continuum_dyn.scenario_files.csv_table import Tables
 from continuum_dyn.scenario_files.tables import (
     BaseTable,
@@ -14,14 +15,14 @@ from continuum_dyn.scenario_files.tables import (
     ScenarioFile,
     TableFile,
 )
-from statics.arm import PRESETS, Arm, Base, Cable, PerDisk
+from statics.arm import Arm, Base, Cable, PerDisk
 from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
-from statics.errors import InputError, did_you_mean
+from statics.errors import InputError
 from statics.scene import Scene
 
 
 def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
-    """Build the scenario of a checked file; ``name`` is its title where the file gives none."""
+    """Build the scenario of a checked file; ``name`` is its title if the file gives none."""
     is_ramp = file.study.takes_lists
     effects = [
         effect for name in EffectsTable.model_fields if (effect := getattr(file.effects, name)) is not None
@@ -60,16 +61,7 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
 
 
 def _arm(file: ScenarioFile) -> Arm:
-    given = {name: value for name, value in file.arm if value is not None}
-    preset, _ = given.pop("preset", None), given.pop("subsegments", None)
-    if preset is not None and preset not in PRESETS:
-        raise InputError(f"[arm] unknown preset '{preset}'.{did_you_mean(preset, PRESETS)}")
-    numbers = {**({} if preset is None else PRESETS[preset]), **_with_radius(given)}
-    missing = [name for name in ("disks", "disk_spacing") if name not in numbers]
-    if missing:
-        raise InputError(
-            f"[arm] missing {' and '.join(missing)}. Give them, or a preset: {', '.join(PRESETS)}."
-        )
+    numbers = arm_numbers(file.arm)
     cables = tuple(_cable(cable, f"cable_{number}") for number, cable in enumerate(file.cables, start=1))
     lists = {name: values for name, values in numbers.items() if isinstance(values, tuple)}
     if isinstance(numbers["disk_spacing"], tuple):
@@ -80,26 +72,12 @@ def _arm(file: ScenarioFile) -> Arm:
 
 
 def _subsegments(given: int | str | None) -> int:
-    """Segments from disk to disk; where the program chooses them it starts from one."""
+    """Segments from disk to disk; if the program chooses them it starts from one."""
     if given is None or given == "auto":
         return 1
     if isinstance(given, str) or given < 1:
         raise InputError(f'[arm] subsegments: a number from 1 on, or "auto"; read {given!r}.')
     return given
-
-
-def _with_radius(given: dict[str, Any]) -> dict[str, Any]:
-    if "core_radius" not in given:
-        return given
-    both = [name for name in ("area", "second_moment") if name in given]
-    if both:
-        raise InputError(f"[arm] core_radius already sets {' and '.join(both)}. Give one or the other.")
-    radius = given["core_radius"]
-    rest = {name: value for name, value in given.items() if name != "core_radius"}
-    if not isinstance(radius, tuple):
-        return {**rest, **Arm.round_core(radius)}
-    cores = [Arm.round_core(each) for each in radius]
-    return {**rest, **{name: tuple(core[name] for core in cores) for name in cores[0]}}
 
 
 def _cable(cable: CableTable, numbered: str) -> Cable:

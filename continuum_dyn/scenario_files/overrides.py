@@ -32,7 +32,7 @@ class Override:
 
 
 def apply_overrides(text: str, name: str, overrides: Sequence[str]) -> str:
-    """Apply changes to the text of the scenario ``name``: TOML written anew, the changes listed in a comment.
+    """Apply changes to the text of the scenario ``name``: rewritten TOML, with the changes in a comment.
 
     They are also appended to its title, unless a change sets it. Raises ``InputError`` for text that is not
     an override or names no table, ``tomllib.TOMLDecodeError`` for a scenario that is not TOML.

@@ -11,6 +11,7 @@ from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, RampStudy, StepResponseStudy
 from continuum_dyn.scenario_files.csv_table import MAX_ROWS
 from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassList, Payload, PositiveList
+from statics.materials import MATERIALS
 from statics.support.checked import STRICT, Line, NonNegative, Positive, Vector
 
 
@@ -94,22 +95,37 @@ Preset = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(PRESETS)
 SUBSEGMENTS = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_SEGMENTS}, {"const": "auto"}]}
 
 
+MaterialName = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(MATERIALS)})]
+
+
 class ArmTable(BaseModel):
-    """[arm]: its numbers; what is given beats the preset."""
+    """[arm]: its numbers, or what they follow from; what is given beats the preset."""
 
     model_config = STRICT
     preset: Annotated[
         Preset | None, Field(description="the arm of a paper: its numbers hold where none are given")
     ] = None
     disks: DiskNumber | None = None
+    length: Annotated[
+        Positive | None,
+        Field(description="undeformed length of the core, base to last disk, m; sets disk_spacing, or disks"),
+    ] = None
     disk_spacing: PositiveEach | None = None
+    core_material: MaterialName | None = None
     youngs_modulus: PositiveEach | None = None
     core_radius: PositiveEach | None = None
+    core_outer_radius: PositiveEach | None = None
+    core_inner_radius: PositiveEach | None = None
     area: PositiveEach | None = None
     second_moment: PositiveEach | None = None
+    core_density: Positive | None = None
+    disk_radius: PositiveEach | None = None
+    disk_inner_radius: PositiveEach | None = None
+    disk_thickness: PositiveEach | None = None
+    disk_material: MaterialName | None = None
+    disk_density: PositiveEach | None = None
     disk_mass: MassEach | None = None
     disk_inertia: MassEach | None = None
-    core_density: Positive | None = None
     reference_curvature: NumberEach | None = None
     subsegments: Annotated[
         Annotated[int | Line, WithJsonSchema(SUBSEGMENTS)] | None,

@@ -1,4 +1,4 @@
-"""The place where a motion's tip should rest, and its distance from there."""
+"""Rest position of a motion's tip, and the distance of its last sample from there."""
 
 from collections.abc import Sequence
 from itertools import pairwise

@@ -53,12 +53,12 @@ class Run:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Words about what is legal but odd, a sentence or two for each."""
+        """Warnings about valid but unusual inputs or results, one or two sentences each."""
         return warnings_of(self)
 
     @property
     def bending_strain(self) -> float | None:
-        """Largest bending strain of a round core; None where its radius is not known."""
+        """Largest bending strain of a round core; None if its radius is not known."""
         return bending_strain(self)
 
     @property

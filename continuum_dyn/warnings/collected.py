@@ -1,4 +1,4 @@
-"""All warnings of a run, in the order in which they are told."""
+"""All warnings of a run, in the order of printing."""
 
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
@@ -21,14 +21,14 @@ BEFORE: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     asked.core_counted_twice,
     asked.drives_without_a_change,
 )
-"""Checks of what was asked."""
+"""Checks of the scenario."""
 AFTER: "tuple[Callable[[Run], Iterator[str]], ...]" = (
     results.strained,
     results.coarser_than_the_travel,
     results.samples_too_far_apart,
     results.explicit_on_a_stiff_arm,
 )
-"""Checks of what was found."""
+"""Checks of the results."""
 
 
 def warnings_of(run: "Run") -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Results that should be looked at twice: strains, tolerances above the travel, samples too far apart."""
+"""Warnings about results: strains, tolerances above the travel, samples too far apart."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 LARGEST_STRAIN = 0.02
 """Bending strain above which few cores stay elastic."""
 STILL = 1e-9
-"""Travel over the arm's length below which nothing moves: rounding leaves some."""
+"""Largest travel over the arm's length that is only rounding."""
 
 
 def bending_strain(run: "Run") -> float | None:
-    """Largest bending strain of a round core in all that was computed; None where its radius is not known."""
+    """Largest bending strain of a round core in all that was computed; None if its radius is not known."""
     arm = run.scenario.scene.arm
     radius = core_radius(arm)
     curvatures = [point.curvature[None] for point in run.equilibria if point.found]

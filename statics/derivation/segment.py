@@ -126,7 +126,7 @@ class DrivenLoad(NamedTuple):
 
 
 class SpanSymbols:
-    """The core from one disk to the next, where it has several segments: the poses of its two ends.
+    """The core from one disk to the next, if it has several segments: the poses of its two ends.
 
     The span ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with
     ``span_``; any other glossary name is a parameter of it.

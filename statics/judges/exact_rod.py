@@ -114,7 +114,7 @@ def exact_rod(scene: Scene, tension: object = None) -> RodShape:
 
     A cantilever from the arm's base, followed from no load to the full loads as long as it is
     stable. Effects that exist in motion only play no part. Raises ``InputError`` for tensions that do
-    not fit and for what the rod does not know, ``RodError`` where it buckles, snaps or comes to
+    not fit and for what the rod does not know, ``RodError`` if it buckles, snaps or comes to
     the end of its geometry before the full loads are on.
     """
     values = scene.check_tension(tension)[: scene.cables]
@@ -209,7 +209,7 @@ def _core_weight(scene: Scene) -> np.ndarray:
 def _follow_loads(rod: _Rod) -> np.ndarray:
     """Internal force and moment at the start of each piece under the full loads, shape (nodes, 3).
 
-    From the unloaded rod, whose internal loads are zero, by steps that halve where they fail.
+    From the unloaded rod, whose internal loads are zero, by steps that halve if they fail.
     """
     loads = np.zeros((len(rod.dead_load) * rod.parts, 3))
     reached, step = 0.0, 1.0
@@ -231,7 +231,7 @@ def _balanced(rod: _Rod, start: np.ndarray) -> np.ndarray:
     """Internal loads that balance every node, by Newton's method from ``start``.
 
     A step more than half as long as the one before it ends the search, lest it finds another branch
-    (Deuflhard 2011, sec. 5.1). Raises ``RodError`` with the reason where they are not found near ``start``.
+    (Deuflhard 2011, sec. 5.1). Raises ``RodError`` with the reason if they are not found near ``start``.
     """
     loads, longest = start, np.inf
     for _ in range(MAX_ITERATIONS):

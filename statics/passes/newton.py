@@ -41,6 +41,7 @@ from statics.passes.search import (
     add_scaled,
     clear,
     copy,
+    is_balanced,
     largest,
     measure,
     pose_pass,
@@ -88,7 +89,7 @@ def descend(passes: RestPasses, arm: Arm, work: Work) -> int:
 
 @compiled
 def substitute(passes: RestPasses, work: Work) -> None:
-    """Set ``change`` from what the elimination left."""
+    """Set ``change`` from the result of the elimination."""
     chain, _, descent, change, _, _, scalars = work
     run(passes.substitute, change.shape[0], scalars, chain, descent, change)
 
@@ -193,7 +194,7 @@ def leave_saddle(
 ) -> bool:
     """Move ``q`` off an unstable equilibrium, down along a direction of negative curvature.
 
-    Returns whether there is a way down within the geometric limits.
+    Returns whether the energy can fall within the geometric limits.
     """
     n, dofs = q.shape
     chain, pivots, scalars = (
@@ -293,20 +294,23 @@ def examine_stability(
     inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
+    rest_length: float,
     pose: np.ndarray,
-) -> tuple[float, float, float, int]:
-    """Poses of the disks into ``pose``, shape (n, 3).
+) -> tuple[float, float, float, int, bool]:
+    """Put the disks' poses into ``pose``, shape (n, 3).
 
-    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and the number of negative
-    eigenvalues of the potential energy's Hessian: at an equilibrium, its unstable directions.
+    Returns elastic energy, gravity energy (J), the largest residual (N or N m), the number of negative
+    eigenvalues of the potential energy's Hessian (at an equilibrium, its unstable directions), and whether
+    the forces balance.
     """
     n, dofs = q.shape
     chain, scalars, residual = np.empty((n, passes.chain_columns)), np.empty(SCALARS), np.empty((n, dofs))
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     run(passes.residual, n, scalars, disks, chain, residual)
+    balanced = is_balanced(passes, disks, chain, residual, rest_length)
     negative = solve_exactly(passes, segments, disks, chain, residual, np.empty((n, dofs)))
     run(passes.observe, n, scalars, q, inputs, segments, disks, chain, pose)
-    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative
+    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative, balanced
 
 
 @compiled

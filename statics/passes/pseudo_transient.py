@@ -34,6 +34,7 @@ from statics.passes.search import (
     UNKNOWN,
     add_scaled,
     copy,
+    is_balanced,
     largest,
     measure,
     pose_pass,
@@ -156,20 +157,22 @@ def examine_balance(
     inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
+    rest_length: float,
     pose: np.ndarray,
-) -> tuple[float, float, float, int]:
-    """Poses of the disks into ``pose``, shape (n, 3).
+) -> tuple[float, float, float, int, bool]:
+    """Put the disks' poses into ``pose``, shape (n, 3).
 
-    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and the number of unstable
-    directions, or UNKNOWN: the signs of an unsymmetric matrix say nothing of oscillations that grow. Friction
-    only takes energy: with the tensions held as they are the rest has a potential, and where that is at a
-    minimum nothing grows.
+    Returns elastic energy, gravity energy (J), the largest residual (N or N m), the number of unstable
+    directions, or UNKNOWN, and whether the forces balance. The signs of an unsymmetric matrix do not show
+    oscillations that grow. Friction only takes energy: with the tensions kept as they are the rest has a
+    potential, and at a minimum of that nothing grows.
     """
     n, dofs = q.shape
     chain, scalars = np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     residual, descent = np.empty((n, dofs)), np.empty((n, dofs))
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     run(passes.residual, n, scalars, disks, chain, residual)
+    balanced = is_balanced(passes, disks, chain, residual, rest_length)
     negative = UNKNOWN
     if passes.eliminate_held != 0:
         pivots = np.empty((n, passes.pivot_columns))
@@ -177,4 +180,4 @@ def examine_balance(
         run(passes.eliminate_held, n, scalars, segments, disks, chain, residual, descent, pivots)
         negative = int(scalars[NEGATIVE_PIVOTS])
     run(passes.observe, n, scalars, q, inputs, segments, disks, chain, pose)
-    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative
+    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative, balanced

@@ -84,9 +84,12 @@ def test_fastest_rate_is_that_of_the_axial_modes(prices: cost.Cost) -> None:
 
 def test_picture_has_a_curve_for_each_method(prices: cost.Cost) -> None:
     by_time, by_work, by_mesh = plots.cost(prices).axes
-    assert [line.get_label() for line in by_work.lines] == ["chain", "LSODA"]
+    assert [line.get_label() for line in by_work.lines] == ["chain", "LSODA", "least work"]
     assert np.shape(by_time.lines[0].get_xdata()) == (3,)
-    assert [line.get_label() for line in by_mesh.lines] == ["one mesh", "from two"]
+    assert [line.get_label() for line in by_mesh.lines] == [
+        "segments from disk to disk",
+        "extrapolated from two meshes",
+    ]
 
 
 def test_meshes_are_held_against_the_exact_rod(prices: cost.Cost) -> None:

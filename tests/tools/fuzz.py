@@ -7,19 +7,13 @@ read back. A mutant that ends in any other way or with a warning, or takes more 
 long run can be split, or taken up where it was left: ``--first 500000``.
 """
 
-import argparse
-import faulthandler
-import resource
-import signal
 import sys
 import tempfile
-import time
-import traceback
 import warnings
-from collections import Counter
 from pathlib import Path
 from random import Random
 
+from campaign import Campaign, numbers_and_seed
 from scenario_mutants import mutant, spoiled
 
 from continuum_dyn import load_scenario, simulate
@@ -38,19 +32,12 @@ MEMORY = 4_000_000_000
 """Most address space of the whole program, bytes."""
 LOGGED = 4
 """One of so many numbers of mutants has its log written."""
-WATCHED = 100
-"""Mutants in a row that are given up, with a traceback, where even compiled code does not come to its end."""
-MAX_SHOWN = 10
 REPORTED = 10_000
 """Mutants between two lines that tell how far it is."""
 
 
 class NotCachedError(Exception):
     """The mutant's kernel would have to be made."""
-
-
-class TooSlowError(Exception):
-    """A mutant took longer than it may."""
 
 
 def outcome_of(text: str, folder: Path, is_logged: bool) -> str:
@@ -86,59 +73,27 @@ def warm_up() -> None:
     loading._kept_text = refuse
 
 
-def fuzz(first: int, count: int, seed: int) -> int:
-    """Try so many mutants; prints what they came to, and returns the number of failures."""
+def main() -> int:
+    """Exit status: 1 if any mutant failed."""
+    numbers, seed = numbers_and_seed(__doc__, 1000)
     texts = [path.read_text() for path in sorted(SCENARIOS.glob("*.toml"))]
     table = TABLE.read_text()
-    found, failures, slowest, started = Counter[str](), Counter[str](), 0.0, time.monotonic()
+    warm_up()
+    warnings.simplefilter("error")
     with tempfile.TemporaryDirectory() as folder:
-        for number in range(first, first + count):
+
+        def attempt(number: int) -> list[str]:
             rng = Random(f"{seed} {number}")
             text = mutant(rng, texts)
             if TABLE.name in text:
                 (Path(folder) / TABLE.name).write_text(spoiled(rng, table) if rng.random() < 0.5 else table)
-            if number % WATCHED == 0:
-                faulthandler.dump_traceback_later(WATCHED * SECONDS, exit=True)
-            signal.setitimer(signal.ITIMER_PROF, SECONDS)
-            before = time.process_time()
-            try:
-                found[outcome_of(text, Path(folder), number % LOGGED == 0)] += 1
-            except Exception:
-                told = traceback.format_exc()
-                kind = "\n".join(told.splitlines()[-4:])[-300:]
-                failures[kind] += 1
-                if failures[kind] == 1 and len(failures) <= MAX_SHOWN:
-                    print(f"--- seed {seed}, mutant {number}\n{text[:2000]}\n{told[-2000:]}", flush=True)
-            finally:
-                signal.setitimer(signal.ITIMER_PROF, 0)
-            slowest = max(slowest, time.process_time() - before)
-            if (number + 1 - first) % REPORTED == 0:
-                print(f"{number + 1 - first} mutants, {failures.total()} failures", flush=True)
-    faulthandler.cancel_dump_traceback_later()
-    seconds, peak = time.monotonic() - started, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
-    print(f"{count} mutants of seed {seed}, from number {first} on, in {seconds:.0f} s,")
-    print(f"the slowest {slowest:.2g} s, at most {peak:.0f} MB, {failures.total()} failures")
-    for outcome, times in found.most_common():
-        print(f"  {outcome:28} {times}")
-    return failures.total()
+            return [outcome_of(text, Path(folder), number % LOGGED == 0)]
 
+        def describe(number: int) -> str:
+            return mutant(Random(f"{seed} {number}"), texts)[:2000]
 
-def main() -> int:
-    """Exit status: 1 if any mutant failed."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--seed", type=int, default=0)
-    asked = parser.parse_args()
-
-    def too_slow(_signal: int, _frame: object) -> None:
-        raise TooSlowError
-
-    signal.signal(signal.SIGPROF, too_slow)
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    warm_up()
-    warnings.simplefilter("error")
-    return int(fuzz(asked.first, asked.count, asked.seed) > 0)
+        campaign = Campaign("mutant", attempt, describe, SECONDS, MEMORY, REPORTED)
+        return int(campaign.run(numbers, seed) > 0)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from continuum_dyn.scenario.scenario import Scenario
 
 LOWEST = 3
-"""Modes that are told of."""
+"""Largest number of modes shown."""
 
 
 def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
@@ -80,7 +80,7 @@ def show_modes(found: "RestModes") -> None:
 
 
 def show_what_to_leave_out(scenario: "Scenario") -> None:
-    """Effects that move the tip by less than is asked for, measured by leaving each out in turn."""
+    """Effects that move the tip by less than the requested accuracy, measured by leaving each out in turn."""
     from continuum_dyn.experiments.cost import effects, prepare_motion
 
     allowed, said = _allowed(scenario)
@@ -105,7 +105,7 @@ def _row(effect: "LeftOut", allowed: float) -> tuple[str, ...]:
 
 
 def _allowed(scenario: "Scenario") -> tuple[float, str]:
-    """Tip error (m) that is allowed, and where that is said."""
+    """Largest allowed tip error, m, and the key that sets it."""
     if scenario.accuracy is not None:
         return scenario.accuracy.tip, "[accuracy] tip"
     if getattr(scenario.study, "settled_within", None) is not None:

@@ -11,7 +11,7 @@ from continuum_dyn.views.rerun_core.stream import Stream
 WIDTH, HEIGHT = 900, 300
 """Width and height of the picture, pixels."""
 BOTTOM, TOP = -float(HEIGHT), 0.0
-"""Rerun's pictures hang down from the origin."""
+"""Rerun draws pictures downwards from the origin."""
 SHOWN = ((-110.0, WIDTH + 50.0), (BOTTOM - 60.0, TOP + 20.0))
 """Ranges of the view: from left to right, from bottom to top."""
 MOST_TICKS = 5

@@ -57,7 +57,7 @@ def _why_no_window(words: str, status: int) -> str:
 
 
 def serve(logs: Sequence[Log], tell: Callable[[str], None]) -> None:
-    """Show logs to browsers on this computer until Ctrl-C; ``tell`` is given the address to open.
+    """Serve logs to browsers on this computer until Ctrl-C; ``tell`` receives the address to open.
 
     Raises ``LogError`` if the server cannot run here.
     """

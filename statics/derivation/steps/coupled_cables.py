@@ -21,7 +21,7 @@ def _slope_names(cable: CableSymbols) -> list[str]:
 
 
 def carry_slopes(trace: Trace, forces: SceneForces, coupled: list[CableSymbols]) -> Carried:
-    """Carry the slopes from a span's end, where they are known, to its start, where the hole is."""
+    """Carry the slopes from a span's end, where they are known, to the hole at its start."""
     carried: Carried = {}
     for cable in coupled if forces.span is not None else []:
         for name in _slope_names(cable):
