@@ -1,4 +1,4 @@
-"""Writes what the program knows of itself into the reference: commands, scenario keys, effects, glossary.
+"""Generated parts of the reference: commands, scenario keys, effects, glossary.
 
 A page marks where a part belongs by ``<!-- generated: PART -->``; ``make reference`` renews what is there.
 """
@@ -86,18 +86,18 @@ def exit_statuses() -> str:
 
 
 OF_EFFECTS = """\
-The effects in play: `gravity = {}` takes one with what it has by default. What is not named is in no
-equation. `cables`, `cable_friction` and `loads` are no keys here: they come with `[[cables]]`, their
-`friction`, and `[[loads]]`."""
+The effects to include: `gravity = {}` includes one with its default values. Effects not listed are left
+out of the equations. `cables`, `cable_friction` and `loads` are not keys here: `[[cables]]`, their
+`friction`, and `[[loads]]` include them."""
 
 
 OF_PROFILES = """\
-What drives a motion: a tension, a cable's displacement, a load's factor, the base's `x`, `y` or `angle`.
-A number alone is constant; in a ramp study a list has a value for each point."""
+Inputs of a motion: a tension, a cable's displacement, a load's factor, the base's `x`, `y` or `angle`.
+A number alone is a constant; in a ramp study a list has a value for each point."""
 
 
 def scenario_keys() -> str:
-    """Every table of a scenario file: its keys, what they may be, what they mean."""
+    """Every table of a scenario file, with its keys, their values and meanings."""
     parts, chapter = [], ""
     for found in key_tables()[:-1]:
         name, _, kind = found.heading.partition(" ")
@@ -140,7 +140,7 @@ def _keys(found: KeyTable) -> str:
 
 
 def effects() -> str:
-    """Every effect: what it does, what it needs of the arm, where it is from; and the keys of its table."""
+    """Every effect, with its numbers of the arm, its source, and the keys of its table."""
     of_effects = {found.heading: found for found in key_tables()}
     parts = []
     for name, effect in EFFECTS.items():
@@ -181,7 +181,7 @@ BLOCK = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end of generated text
 
 
 def renewed(page: str) -> str:
-    """The text of a page with its generated parts made anew."""
+    """The text of a page with its generated parts renewed."""
     return BLOCK.sub(lambda found: f"{found[1]}\n{PARTS[found[2]]().strip()}\n\n{found[3]}", page)
 
 

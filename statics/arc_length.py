@@ -1,4 +1,4 @@
-"""Paths of equilibria by arc length: they are followed through folds, where a load cannot grow any further.
+"""Paths of equilibria by arc length, through folds, at which a load cannot grow any further.
 
 Along a ramp of inputs both the coordinates q and the ramp's parameter are unknown, and the step is given as
 a length along the path (Riks 1979; Crisfield 1981; Keller 1977):
@@ -6,8 +6,8 @@ a length along the path (Riks 1979; Crisfield 1981; Keller 1977):
     r(q, parameter) = 0      t . (q - q0, parameter - parameter0) = length
 
 with t the path's unit tangent. The bordered system takes two solutions with the elimination along the chain,
-for -r and for -dr/dplace, so a step costs O(n). Where the tangent turns back the path folds; where the number
-of unstable directions changes and it does not, another path branches off.
+for -r and for -dr/dplace, so a step costs O(n). If the tangent turns back, the path has a fold; if the number
+of unstable directions changes without a fold, another path branches off.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -28,13 +28,13 @@ MOST_CORRECTIONS = 10
 EASY = 4
 """Corrections up to which the next step is longer."""
 LEAST_COSINE = 0.95
-"""Least cosine between two tangents in a row: below it the step is tried again at half its length."""
+"""Smallest cosine between consecutive tangents; below it the step is repeated at half its length."""
 MOST_OFF = 0.1
 """Largest distance of a step from the mean of its tangents: beyond it the step has left the path."""
 SHORTEST_HIDING = 1e-3
 """Shortest step that is searched for two hidden folds or branchings: closer ones may be missed."""
 INVERSE_ITERATIONS = 3
-"""Number of iterations for the mode that the arm resists least."""
+"""Number of iterations for the least stiff mode."""
 STIFFNESS_DIFFERENCE = 1e-4
 """Length along the path by which the stiffness is differenced."""
 HALF_DIFFERENCE = 0.5
@@ -58,7 +58,7 @@ class Path:
     """Equilibria along a path: those at the ramp's points, folds and branchings, in the order of the path.
 
     ``outcome`` says how it ended: ``completed`` at the ramp's last point, ``geometry_limit``, or
-    ``no_equilibrium`` where it turns back beyond the ramp's first point or cannot be followed any further;
+    ``no_equilibrium`` if it turns back beyond the ramp's first point or cannot be continued;
     ``end`` is where that was, and ``parameters`` are the ramp's at its points, counted from 0.
     """
 
@@ -79,9 +79,9 @@ def follow_path(
 ) -> Path:
     """The path of equilibria along a ramp of tensions through all its folds.
 
-    Each of ``tensions`` is what ``equilibrium`` takes. The path begins at the equilibrium that a search finds
-    from ``start``, or from straight, and takes at most so many ``steps``. Raises ``InputError`` for tensions
-    that do not fit, and for scenes without a potential.
+    Each of ``tensions`` is as for ``equilibrium``. The path starts at the equilibrium that a search finds
+    from ``start``, or from the straight arm, and takes at most ``steps`` steps. Raises ``InputError`` for
+    tensions that do not fit, and for scenes without a potential.
     """
     scene.check_followable()
     solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
@@ -106,7 +106,7 @@ def follow(
 
 
 class _PathPoint(NamedTuple):
-    """A point of the path: coordinates, the ramp's parameter, unit tangent, and what the elimination says.
+    """A point of the path: coordinates, parameter of the ramp, unit tangent, results of the elimination.
 
     ``leg`` is the ramp's leg that the path is on, counted from 0: its inputs are linear from the point of
     that number to the next one, and beyond both.
@@ -143,7 +143,7 @@ class ArcLength:
         return self.ramp[leg] + (parameter - leg) * (self.ramp[leg + 1] - self.ramp[leg])
 
     def leg_from(self, point: float, way: float) -> int:
-        """The leg that begins at a point of the ramp, forwards or backwards; at its ends the only one."""
+        """The leg that starts at a point of the ramp, forwards or backwards; at its ends the only one."""
         return min(max(int(point) - (way < 0.0), 0), len(self.ramp) - 2)
 
     def residual(self, q: np.ndarray, inputs: np.ndarray) -> tuple[np.ndarray, float]:
@@ -174,7 +174,7 @@ class ArcLength:
         return change, newton.solve_exactly(self.kernel.passes, *numbers)
 
     def softest_push(self, at: _PathPoint) -> np.ndarray:
-        """Forces, shape of q, near those of the mode that the arm resists least, by inverse iteration."""
+        """Forces, shape of q, near those of the least stiff mode, by inverse iteration."""
         self.residual(at.q, self.inputs(at.parameter, at.leg))
         push = self.push
         for _ in range(INVERSE_ITERATIONS):
@@ -208,7 +208,7 @@ class ArcLength:
         towards: tuple[np.ndarray, float],
         corrections: int = 0,
     ) -> _PathPoint:
-        """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
+        """An equilibrium as a point of the path, with the tangent in that direction."""
         by_parameter, negative, clearance = self.tangent_at(q, parameter, leg)
         length = np.sqrt(self.inner(by_parameter, by_parameter) + 1.0)
         ahead = self.inner(by_parameter, towards[0]) + towards[1] >= 0.0
@@ -244,8 +244,8 @@ class ArcLength:
     def at_point(self, near: _PathPoint, point: float, way: float) -> tuple[_PathPoint, _PathPoint]:
         """The equilibrium at exactly a point of the ramp, from one within rounding of it.
 
-        As the path comes to it and as it goes on, ``way`` 1 forwards or -1 backwards: the ramp may have a
-        corner there, or turn back.
+        One point before it and one after it, in the direction ``way``, 1 or -1: the ramp may have a corner
+        there, or turn back.
         """
         residual, _ = self.residual(near.q, self.inputs(point, near.leg))
         q = near.q + self.solve(residual)[0]
@@ -399,9 +399,9 @@ class _Follower:
         return fold._replace(negative=beyond.negative), Critical.FOLD, False
 
     def _cut_at_branching(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
-        """A step up to the first place where the number of unstable directions changes; None if lost.
+        """A step up to the first change of the number of unstable directions; None if lost.
 
-        It is looked for where the number changes by one alone, or by more at once.
+        The number may change there by one or by more at once.
         """
         arc, here = self.arc, self.here
         low = 0.0

@@ -11,8 +11,8 @@ Positive senses, everywhere in the program::
         +-----------------------> x
 
 A cable on the +y side bends the arm towards +y. Disks and segments count from 1 at the base. Segment i
-ends in node i: the centre of disk i, or, with ``subsegments`` of them from disk to disk, every so-many-th
-node is a disk's centre and the others are points of the core.
+ends in node i: the centre of disk i or, with ``subsegments`` segments from disk to disk, every
+``subsegments``-th node is the centre of a disk, and the others are points of the core.
 """
 
 from collections import Counter
@@ -38,6 +38,8 @@ Subsegments = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
 class Cable:
     """A cable through a hole of every disk up to its anchor; ``anchor=None`` is the last disk.
 
+    With a ``start`` it reaches that disk in a sheath of constant length that is fixed there, like a Bowden
+    cable: the disks before it feel nothing of the cable, and that disk is to it what the base is otherwise.
     ``hole_offset`` (m) is one number, or one for the base and each disk up to the anchor. With a
     ``cable_stiffness`` (N/m) the cable is driven by its length: its displacement, how much of it is drawn in
     at the base, is given, and its tension follows. ``friction`` is the coefficient at its holes, and
@@ -50,6 +52,7 @@ class Cable:
     cable_stiffness: Positive | None = None
     friction: NonNegative = 0.0
     slip_speed: Positive = 1e-5
+    start: DiskNumber | None = None
 
     @property
     def driven_by_length(self) -> bool:
@@ -87,7 +90,7 @@ MassList = Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1)]
 class PerDisk:
     """Numbers of an arm whose disks, or the cores before them, differ: one for each disk, from the base on.
 
-    What is given here beats the arm's one number of that name.
+    They override the arm's single number of that name.
     """
 
     disk_spacing: PositiveList | None = None
@@ -117,7 +120,7 @@ class Payload:
 class Base:
     """Mount of the arm: the core starts at (x, y), m, at an ``angle`` (rad) to the x axis.
 
-    One that ``moves`` is there at the start, and what it does then is an input of the motion.
+    If it ``moves``, this is its pose at the start, and its motion is an input.
     """
 
     x: float = 0.0
@@ -196,6 +199,11 @@ class Arm:
                 f"Allowed: disks 1 to {self.disks}."
             )
         last = cable.anchor or self.disks
+        if cable.start is not None and cable.start >= last:
+            raise InputError(
+                f"cable '{cable.name}': start {cable.start} is not before its anchor, disk {last}. "
+                f"Allowed: disks 1 to {last - 1}, or none for the base."
+            )
         if isinstance(cable.hole_offset, tuple) and len(cable.hole_offset) != last + 1:
             raise InputError(
                 f"cable '{cable.name}': {len(cable.hole_offset)} hole_offsets. Give one number, or "
@@ -212,7 +220,7 @@ class Arm:
 
     @classmethod
     def preset(cls, name: str, **changes: Any) -> "Arm":
-        """An arm from the literature; what is given in ``changes`` beats the preset.
+        """An arm from the literature; ``changes`` override the preset.
 
         Raises ``InputError`` for a name that is not a preset.
         """
@@ -309,7 +317,8 @@ class Arm:
             holes = cable.holes(self.disks)
             columns[f"hole_offset_{number}"] = np.repeat(holes[1:], self.subsegments)
             columns[f"near_hole_offset_{number}"] = np.repeat(holes[:-1], self.subsegments)
-            passes = (is_disk == 0) & (disk <= (cable.anchor or self.disks))
+            felt = (disk > (cable.start or 0)) & (disk <= (cable.anchor or self.disks))
+            passes = (is_disk == 0) & felt
             columns[f"cable_passes_{number}"] = passes.astype(float)
             if cable.cable_stiffness is not None:
                 columns[f"cable_stiffness_{number}"] = np.full(self.segments, cable.cable_stiffness)
@@ -317,11 +326,12 @@ class Arm:
         return columns
 
     def cable_rest_length(self, cable: Cable) -> float:
-        """Length of a cable from its hole in the base to its anchor, along the unloaded arm, m. Eq. 23."""
+        """Length of a cable from its first hole to its anchor, along the unloaded arm, m. Eq. 23."""
         holes, spacing = cable.holes(self.disks), self.per_disk("disk_spacing")
         half = self.per_disk("reference_curvature") * spacing / 2
         along = np.sinc(half / pi) * (spacing - half * (holes[1:] + holes[:-1]))
-        return float(np.hypot(along, np.diff(holes) * np.cos(half))[: cable.anchor or self.disks].sum())
+        lengths = np.hypot(along, np.diff(holes) * np.cos(half))
+        return float(lengths[cable.start or 0 : cable.anchor or self.disks].sum())
 
     def _along(self, name: str) -> np.ndarray:
         """A number of the core before each disk, for each segment, shape (segments,)."""
@@ -390,5 +400,5 @@ class Arm:
         return (of_segments + np.append(of_segments[1:], 0.0)) / 2
 
     def _core_ends(self) -> np.ndarray:
-        """The part of the core's mass whose place of quadrature is a node, shape (segments,), kg."""
+        """The part of the core's mass at quadrature points that are nodes, shape (segments,), kg."""
         return AT_END * (self.core_masses + np.append(self.core_masses[1:], 0.0))

@@ -1,7 +1,7 @@
 """Equilibria of a scene, one at a time.
 
-What is returned as an equilibrium is one: residual at rounding level. Where there is none, or where it is
-not stable, the outcome says so. Under loads without a potential statics alone cannot tell whether it is.
+Every returned equilibrium has a residual at rounding level. If there is none, or if it is not stable, the
+outcome says so. Under loads without a potential, statics alone cannot decide its stability.
 """
 
 from dataclasses import dataclass, replace
@@ -51,15 +51,15 @@ class Critical(IntEnum):
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """An arm at rest under ``tension``, or the search for it where ``found`` is False.
+    """An arm at rest under ``tension``, or the failed search for it if ``found`` is False.
 
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
     loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
     ``base``; SI units. ``inputs`` are the scene's, without
     motion; ``tension`` is that at the base and ``cable_displacement`` the length drawn in there, m.
     ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None if
-    it is not known: under loads without a potential, until the modes of small motion have been asked.
-    ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
+    it is not known: under loads without a potential, until the modes of small motion are computed.
+    ``left`` are the unstable equilibria that the search has reached and left, in this order. Along a ramp
     ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from
     the equilibrium before left the stable ones, if it did. Then this one has ``jumped``, unless it lies on a
     path that branches off there.
@@ -116,7 +116,7 @@ class Equilibrium:
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk.
 
-        Raises ``NotFoundError`` if no equilibrium was found: there the arrays hold where the search ended.
+        Raises ``NotFoundError`` if no equilibrium was found: then the arrays hold the end of the search.
         """
         if not self.found:
             raise NotFoundError(
@@ -188,7 +188,7 @@ class StaticSolver:
         """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default.
 
         ``inputs`` are the scene's, ``Scene.inputs``; those of a base's motion play no part. ``before`` is
-        where the arm comes from, or which way its cables last slipped: only friction asks for it.
+        the equilibrium before, or the direction in which the cables last slipped; only friction uses it.
         """
         arm = self.scene.arm
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start
@@ -198,9 +198,9 @@ class StaticSolver:
         return self._search_from(before, q, inputs)
 
     def _search_from(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The stable equilibrium that remembers the one before, by the first search that finds one.
+        """The stable equilibrium reached from the one before, by the first search that finds one.
 
-        Failing that, an unstable one, or the search for one where the arm is let go.
+        Failing that, an unstable one, or the failed search of a released arm.
         """
         stick, stick_exactly = (partial(self._stick, exactly=exactly) for exactly in (False, True))
         searches = [stick, self._release, stick_exactly, partial(self._stick_step_by_step, before)]
@@ -256,7 +256,7 @@ class StaticSolver:
     def _stick_step_by_step(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
         """The equilibrium as from ``_stick``, through intermediate inputs from the ones before.
 
-        All of them remember the one before, so that where the steps are does not matter.
+        All of them start from the same one before, so the choice of the steps does not matter.
         """
         part, step, iterations = 0.0, 0.5, 0
         while step >= SHORTEST_STEP:
@@ -316,8 +316,13 @@ class StaticSolver:
         if isinstance(before, Slip):
             lengths = [np.full(arm.disks, before * FAR * arm.total_length) for _ in arm.cables]
         else:
-            ways = (cable_lengths(cable, before.poses) for cable in arm.cables)
-            lengths = [np.pad(np.cumsum(way[::-1])[::-1], (0, arm.disks - way.size)) for way in ways]
+            ways = [cable_lengths(cable, before.poses) for cable in arm.cables]
+            starts = [cable.start or 0 for cable in arm.cables]
+            ways = [
+                np.pad(way, (start, arm.disks - start - way.size))
+                for start, way in zip(starts, ways, strict=True)
+            ]
+            lengths = [np.cumsum(way[::-1])[::-1] for way in ways]
         for number, beyond in enumerate(lengths, start=1):
             self._set(f"length_before_{number}", np.repeat(beyond, arm.subsegments))
 
@@ -328,7 +333,7 @@ class StaticSolver:
                 self.segments[:, column] = values
 
     def rests(self, near: Equilibrium) -> list[Equilibrium]:
-        """Equilibria between which the arm may rest under the inputs of one that was found: that one alone.
+        """Equilibria between which the arm may rest under the inputs of a found one: usually that one alone.
 
         Cables that rub may leave it anywhere on the way between the branch of cables drawn in and that of
         cables let out, if there are both; the equilibrium lies on it.
@@ -339,7 +344,7 @@ class StaticSolver:
         return [point for point in (drawn_in, near, let_out) if point.found]
 
     def warm_up(self) -> None:
-        """Compile the kernel, or load it compiled, so that what follows is solving alone."""
+        """Compile the kernel, or load it, so that later calls only solve."""
         inputs = np.zeros(len(self.scene.inputs))
         rest = self.solve(inputs)
         if self.rubbing.size:
@@ -361,10 +366,10 @@ def equilibrium(
     """The arm at rest under these tensions, shape (cables,), N; a number will do for a single cable.
 
     For a cable that is driven by its length it is the displacement, m. Newton's method from ``start``, or
-    from the straight arm; effects that exist in motion only play no part. ``before`` is the equilibrium that
-    the arm comes from, or which way its cables have slipped: with friction there are two branches, and what
-    lies between. Look at ``outcome``: a stable equilibrium is ``completed``. Raises ``InputError`` for
-    tensions that do not fit. Rone 2012, Eq. 5.
+    from the straight arm; effects that exist in motion only are ignored. ``before`` is the equilibrium that
+    the arm comes from, or the direction in which its cables have slipped: with friction there are two
+    branches, and equilibria between them. The ``outcome`` of a stable equilibrium is ``completed``. Raises
+    ``InputError`` for tensions that do not fit. Rone 2012, Eq. 5.
     """
     values = scene.check_tension(tension)
     return StaticSolver(scene).solve(values, None if start is None else start.coordinates, before)

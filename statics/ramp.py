@@ -1,7 +1,7 @@
-"""Ramps: a stable equilibrium for one set of inputs after another, none of which jumps without saying so.
+"""Ramps: stable equilibria for a sequence of inputs, with every jump reported.
 
-From one point of a ramp to the next the path of equilibria is continued. A cheap look at its slopes at both
-ends is enough where the two lie on one smooth path; elsewhere it is followed by arc length.
+From one point of a ramp to the next the path of equilibria is continued. If its slopes at both ends show that
+the two lie on one smooth path, this is enough; otherwise it is followed by arc length.
 """
 
 from collections.abc import Iterable
@@ -25,9 +25,9 @@ TOUCHING = 1e-3
 def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
     """Equilibria under one set of tensions after another, each found from the one before it.
 
-    Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
-    starts from the last one that was. One that does not continue the one before has ``jumped``, and
-    ``lost_at`` says from where; it says likewise where the ramp goes on along a path that branches off.
+    Each element of ``tensions`` is one for ``equilibrium``. If none is found, the next search starts from the
+    last one found. One that does not continue the one before has ``jumped``, and
+    ``lost_at`` is the point that it jumped from, or at which the ramp continues on another branch.
     With friction the first is that of cables drawn in, and every other remembers the one before it. Raises
     ``InputError`` for tensions that do not fit.
     """
@@ -71,7 +71,7 @@ def limit_on_the_way(
 ) -> Equilibrium | None:
     """The equilibrium at which the path to inputs without one reaches a geometric limit, if it does.
 
-    The way leads from ``start``, or from slack cables and no loads that change.
+    The path starts at ``start``, or at slack cables and zero load factors.
     """
     path = _way(solver, inputs, start)
     return path.end if path is not None and path.outcome is Outcome.GEOMETRY_LIMIT else None

@@ -1,4 +1,4 @@
-"""A scene: an arm and the effects that it calls for."""
+"""A scene: an arm and its effects."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -236,7 +236,7 @@ class Scene:
         return self.cables > 0 and self.arm.holes_differ
 
     def has(self, name: str) -> bool:
-        """Whether the scene calls for the effect of that name."""
+        """Whether the scene has the effect of that name."""
         return any(effect.name == name for effect in self.effects)
 
     def table(self, site: str, columns: Iterable[str]) -> np.ndarray:

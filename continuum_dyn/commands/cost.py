@@ -26,7 +26,7 @@ def cost(
 
     Runs the motion by every method over a range of tolerances, on finer and finer meshes, and without each
     of its effects. Prints error, least time and work, and the cheapest method for each error: that of least
-    work, weighed by the method's time for an evaluation. Writes DIR/NAME_cost.csv, NAME_cost_mesh.csv,
+    work, weighted with its method's time for an evaluation. Writes DIR/NAME_cost.csv, NAME_cost_mesh.csv,
     NAME_cost.h5 and NAME_cost.png.
     """
     from continuum_dyn.experiments.cost import measure

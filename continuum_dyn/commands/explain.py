@@ -12,6 +12,11 @@ from continuum_dyn.commands.terminal.show import with_status
 from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
+ARM_NUMBERS = (
+    *("disk_spacing", "youngs_modulus", "area", "second_moment"),
+    *("core_density", "disk_mass", "disk_inertia", "reference_curvature"),
+)
+"""Numbers of an arm to show, in this order."""
 _DISK_LETTERS = {
     "velocity_x": "v_x",
     "velocity_y": "v_y",
@@ -49,6 +54,7 @@ def explain(
         f"{scene.arm.segments} segments, {per_segment * scene.arm.segments} coordinates: "
         f"{' and '.join(scene.coordinates)} of each segment.\n"
     )
+    _print_numbers(scene)
     if scene.arm.base is not None:
         _print_base(scene.arm)
     say("Effects in play")
@@ -68,6 +74,21 @@ def explain(
         show_what_to_leave_out(scenario)
     else:
         say("\nWhat this scenario could do without: measured if you add --measure.")
+
+
+def _print_numbers(scene: Any) -> None:
+    """Numbers of the arm and of its effects, in SI units, whatever the file describes them by."""
+    arm = scene.arm
+    known = [name for name in ARM_NUMBERS if arm.knows(name)]
+    numbers = {name: getattr(arm.each, name, None) or getattr(arm, name) for name in known}
+    for effect in scene.effects:
+        numbers |= {name: getattr(effect, name) for name in effect.quantities if hasattr(effect, name)}
+    say(f"Numbers, of {arm.disks} disks on {arm.total_length:g} m of core")
+    for name, value in numbers.items():
+        unit = QUANTITIES[name].unit
+        shown = ", ".join(f"{each:.6g}" for each in (value if isinstance(value, tuple) else (value,)))
+        say(fill(f"  {name} = {shown}" + (f" {unit}" if unit != "1" else ""), 79, subsequent_indent="    "))
+    say()
 
 
 def _print_base(arm: Any) -> None:

@@ -146,19 +146,19 @@ def _markdown(verdicts: "Sequence[Verdict]") -> str:
 
 
 INTRODUCTION = """\
-Written by `continuum-dyn hard`, which runs the scenarios of a folder and holds
-each to the bounds that it states or implies. Error: largest distance of the tip
-from a much tighter run by the last of the methods that claim the case. Work:
-segment evaluations. Time: solving alone, with kernels loaded. Used: the largest
-part of what a bound allows."""
+Written by `continuum-dyn hard`, which runs the scenarios of a folder and checks
+their stated or implied bounds. Error: largest distance of the tip from a much
+tighter run by the last method listed in the case. Work: segment evaluations.
+Time: solving alone, with kernels loaded. Used: the largest part of a bound that
+is used up."""
 
 OTHERS = f"""\
-Below the methods that claim a case, in brackets, are those that do not: each has
-{PATIENCE:g} s. In all, where each method kept every bound, and where it did not:"""
+Methods in brackets are not listed in the case; each has {PATIENCE:g} s. The table counts
+the cases in which each method kept every bound, and the other results:"""
 
 
 def _totals(verdicts: "Iterable[Verdict]") -> list[str]:
-    """For each method, in how many cases it kept the bounds, and how it failed in the others."""
+    """Number of cases in which each method kept the bounds, and of each kind of failure."""
     kinds: dict[str, Counter[str]] = {}
     for verdict in verdicts:
         kinds.setdefault(verdict.method, Counter())[_kind(verdict)] += 1

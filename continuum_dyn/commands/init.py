@@ -28,7 +28,7 @@ def init(
 ) -> None:
     """Write a commented scenario to start from.
 
-    It runs as it is, and shows in comments everything that a scenario may hold. With `--from` it is another
+    It runs as it is, and its comments show everything that a scenario may hold. `--from` copies another
     scenario that comes with the program. Existing files are not changed.
     """
     if names:

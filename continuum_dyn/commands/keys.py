@@ -1,4 +1,4 @@
-"""``continuum-dyn keys``: what a scenario file may say."""
+"""``continuum-dyn keys``: the keys of scenario files."""
 
 from collections.abc import Sequence
 from shutil import get_terminal_size
@@ -26,7 +26,7 @@ def keys(
         ),
     ] = None,
 ) -> None:
-    """Print every key of scenario files: an example, its meaning and unit, what it may be, its default.
+    """Print every key of scenario files: example, meaning, unit, allowed values and default.
 
     Units are SI. `continuum-dyn init` writes a file with most of them to start from.
     """

@@ -68,11 +68,10 @@ def run(
 ) -> None:
     """Simulate scenarios and log them.
 
-    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. With --set, a log of another scenario is kept: the
-    next one is NAME_2.h5. The scenario of a log is run again, into DIR/NAME_again.h5, and both are compared.
-    Exit status: 0 answered ("not settled" is an answer), 1 not
-    answered (no stable equilibrium, geometric limit, diverged, budget exceeded) or different from the log,
-    2 bad input, 130 interrupted.
+    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. With --set the log of another variant is kept, and
+    this one becomes NAME_2.h5. For a log, its scenario is run again, into DIR/NAME_again.h5, and both are
+    compared. Exit status: 0 answered ("not settled" is an answer), 1 not answered (no stable equilibrium,
+    geometric limit, diverged, budget exceeded) or different from the log, 2 bad input, 130 interrupted.
     """
     jobs = _load(files, overrides or (), out)
     if name is not None:

@@ -1,4 +1,4 @@
-"""Reads logs, and refuses those that depart from the format."""
+"""Reading of logs, and refusal of those that differ from the format."""
 
 import os
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ ARM_NUMBERS = [each.name for each in fields(Arm)]
 SCENARIO_START = 5000
 """Number of bytes in which a scenario names its arm."""
 MAX_SHOWN = 12
-"""Largest number of departures from the format that an error lists."""
+"""Largest number of differences from the format that an error lists."""
 
 
 def is_hdf5(path: Path) -> bool:
@@ -56,7 +56,7 @@ def read_log(path: Path) -> Log:
 
 
 def list_departures(path: Path) -> list[str]:
-    """List all departures of a file from the format, in words. Raises ``LogError`` like ``open_log``."""
+    """List all differences of a file from the format, in words. Raises ``LogError`` like ``open_log``."""
     with open_log(path) as file:
         opened = Opened(file)
         found = list(departures(opened))
@@ -105,7 +105,7 @@ def _refuse_other_files(path: Path) -> None:
 
 
 def _read(file: Opened, path: Path) -> Log:
-    """All that is in a file without departures."""
+    """Contents of a file that agrees with the format."""
     names = (*ATTRIBUTES, *OPTIONAL_ATTRIBUTES, "format_version")
     attributes = {name: value for name in names if (value := file.attribute(name)) is not None}
     arm, tables, counted = (file.group_of(name)[0] for name in ("arm", "tables", "trajectory"))

@@ -1,4 +1,4 @@
-"""One writer at a time: a run keeps others from writing the same log until it has ended, however it ends."""
+"""One writer at a time: a run keeps others from writing the same log until it ends, in any way."""
 
 import errno
 import os

@@ -21,9 +21,9 @@ from statics.support.checked import STRICT, NonNegative, Positive
 TIME_RESOLUTION = 1e-300
 """Shortest time between rows of a table, s; slopes over less are beyond floating point."""
 
-Value = Annotated[float, Field(description="value at all times, in the unit of what is driven")]
-Before = Annotated[float, Field(description="value until then, in the unit of what is driven")]
-After = Annotated[float, Field(description="value from then on, in the unit of what is driven")]
+Value = Annotated[float, Field(description="value at all times, in the unit of the driven quantity")]
+Before = Annotated[float, Field(description="value before the change, in the unit of the driven quantity")]
+After = Annotated[float, Field(description="value after the change, in the unit of the driven quantity")]
 Start = Annotated[NonNegative, Field(description="time at which the ramp starts, s")]
 End = Annotated[Positive, Field(description="time at which the ramp ends, s")]
 
@@ -143,8 +143,8 @@ def _from_rest_to_rest(ramp: Ramp | SmoothRamp, rise: Piece) -> list[Piece]:
 class Sine:
     """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t + ``phase``); ``phase`` in rad."""
 
-    mean: Annotated[float, Field(description="mean value, in the unit of what is driven")]
-    amplitude: Annotated[float, Field(description="amplitude, in the unit of what is driven")]
+    mean: Annotated[float, Field(description="mean value, in the unit of the driven quantity")]
+    amplitude: Annotated[float, Field(description="amplitude, in the unit of the driven quantity")]
     frequency: Annotated[Positive, Field(description="frequency, Hz")]
     phase: Annotated[float, Field(description="phase at the start, rad")] = 0.0
     profile: Literal["sine"] = "sine"

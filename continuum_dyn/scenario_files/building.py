@@ -3,15 +3,18 @@
 from dataclasses import replace
 from typing import Any
 
+from continuum_dyn.effects import MaterialDamping
+from continuum_dyn.scenario.first_mode import retardation_time
 from continuum_dyn.scenario.profiles import Constant, Profile
 from continuum_dyn.scenario.scenario import Scenario
-from continuum_dyn.scenario_files.arm_numbers import arm_numbers
+from continuum_dyn.scenario_files.arm_numbers import Numbers, arm_numbers
 from continuum_dyn.scenario_files.csv_table import Tables
+from continuum_dyn.scenario_files.self_contained import self_contained
 from continuum_dyn.scenario_files.tables import (
     BaseTable,
     CableTable,
-    EffectsTable,
     LoadTable,
+    MaterialDampingTable,
     ScenarioFile,
     TableFile,
 )
@@ -24,9 +27,9 @@ from statics.scene import Scene
 def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     """Build the scenario of a checked file; ``name`` is its title if the file gives none."""
     is_ramp = file.study.takes_lists
-    effects = [
-        effect for name in EffectsTable.model_fields if (effect := getattr(file.effects, name)) is not None
-    ]
+    given = {name: effect for name, effect in file.effects if effect is not None}
+    damping = given.pop("material_damping", None)
+    effects = list(given.values())
     if file.cables:
         effects.append(Cables())
     if any(cable.friction > 0 for cable in file.cables):
@@ -45,8 +48,12 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     motion = _base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
+    numbers = arm_numbers(file.arm)
+    scene = Scene(replace(_arm(file, numbers), base=base), effects)
+    if damping is not None:
+        scene = _damped(scene, damping)
     return Scenario(
-        scene=Scene(replace(_arm(file), base=base), effects),
+        scene=scene,
         drives=drives,
         study=file.study,
         solver=file.solver,
@@ -55,13 +62,28 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
         base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or name,
-        text=text,
+        text=self_contained(text, numbers, scene),
         tables=tables.texts,
     )
 
 
-def _arm(file: ScenarioFile) -> Arm:
-    numbers = arm_numbers(file.arm)
+def _damped(scene: Scene, damping: MaterialDampingTable) -> Scene:
+    """The scene with its core's damping, whose retardation time is given or follows from a damping ratio."""
+    time, ratio = damping.retardation_time, damping.damping_ratio
+    if time is not None and ratio is None:
+        return Scene(scene.arm, (*scene.effects, MaterialDamping(time)))
+    if ratio is None or time is not None:
+        raise InputError(
+            "[effects] material_damping: give retardation_time (s) or damping_ratio, and not both."
+        )
+    try:
+        return Scene(scene.arm, (*scene.effects, MaterialDamping(retardation_time(scene, ratio))))
+    except InputError as error:
+        raise InputError(f"[effects] material_damping: {error}") from error
+
+
+def _arm(file: ScenarioFile, numbers: Numbers) -> Arm:
+    numbers = dict(numbers)
     cables = tuple(_cable(cable, f"cable_{number}") for number, cable in enumerate(file.cables, start=1))
     lists = {name: values for name, values in numbers.items() if isinstance(values, tuple)}
     if isinstance(numbers["disk_spacing"], tuple):
@@ -88,6 +110,7 @@ def _cable(cable: CableTable, numbered: str) -> Cable:
         cable.anchor,
         cable_stiffness=cable.cable_stiffness,
         friction=cable.friction,
+        start=cable.start,
         **slip,
     )
 

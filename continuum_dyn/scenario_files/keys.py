@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario_files.examples import examples
 from continuum_dyn.scenario_files.schema import json_schema
-from continuum_dyn.scenario_files.tables import NAMED_ELSEWHERE
+from continuum_dyn.scenario_files.tables import NAMED_ELSEWHERE, OF_EFFECTS
 from statics.materials import MATERIALS
 
 _HEADED = re.compile(r"^\[\w+\]: ")
 
 
 class Key(NamedTuple):
-    """A key of a table; ``value`` says what it may be, in words, in which what is typed stands in `ticks`.
+    """A key of a table; ``value`` describes its allowed values, with literal text in `ticks`.
 
     ``example`` is a line of a scenario file, or the header of the table that the key stands for.
     """
@@ -27,7 +27,7 @@ class Key(NamedTuple):
 
 
 class KeyTable(NamedTuple):
-    """A table of a scenario file, or one kind of it, with what it is for and its keys.
+    """A table of a scenario file, or one kind of it, with its purpose and its keys.
 
     ``example`` is the line that an effect or a profile takes in a file, otherwise empty.
     """
@@ -43,7 +43,7 @@ def key_tables() -> list[KeyTable]:
     schema = json_schema()
     definitions = schema["$defs"]
     of_file = keys_of(schema, definitions, "file")
-    found = [KeyTable("the file", "What stands above all tables, and the tables.", of_file)]
+    found = [KeyTable("the file", "Keys above all tables, and the tables.", of_file)]
     for name, key in schema["properties"].items():
         if name == "effects":
             found += list(_effects(definitions))
@@ -57,7 +57,7 @@ def key_tables() -> list[KeyTable]:
 
 
 def _materials() -> KeyTable:
-    """Materials in place of keys: where the figures of each are from, and what they are."""
+    """Materials as a table of keys: the figures of each, and their source."""
     rows = (
         Key(
             name,
@@ -83,7 +83,7 @@ def _table(heading: str, of_table: dict[str, Any], definitions: dict[str, Any], 
 
 def _effects(definitions: dict[str, Any]) -> Iterator[KeyTable]:
     for name, effect in EFFECTS.items():
-        of_effect = definitions.get(effect.__name__, {})
+        of_effect = definitions.get(OF_EFFECTS[name].__name__, {})
         text = (effect.__doc__ or "").partition("\n\n")[0].replace("``", "`")
         found = KeyTable(f"[effects] {name}", text, keys_of(of_effect, definitions, f"effects.{name}"))
         yield found if name in NAMED_ELSEWHERE else found._replace(example=_inline(name, found.keys))
@@ -99,7 +99,8 @@ def _profiles(definitions: dict[str, Any]) -> Iterator[KeyTable]:
 
 def _inline(name: str, keys: tuple[Key, ...], *first: str) -> str:
     """A table on one line, with examples of the keys that it must have."""
-    known = ", ".join([*first, *(key.example for key in keys if key.default == "required")])
+    needed = [key.example for key in keys if key.default == "required"]
+    known = ", ".join([*first, *(needed or [key.example for key in keys[:1] if not key.default])])
     return f"{name} = {{ {known} }}" if known else f"{name} = {{}}"
 
 

@@ -12,13 +12,13 @@ from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
 from continuum_dyn.scenario.solver import Accuracy, Method, Solver
 from continuum_dyn.scenario.studies import STUDIES
 from continuum_dyn.scenario_files.expected import as_read, expected
 from continuum_dyn.scenario_files.synonyms import meant_by
 from continuum_dyn.scenario_files.tables import (
+    OF_EFFECTS,
     UNKNOWN_PROFILE,
     ArmTable,
     BaseTable,
@@ -59,7 +59,7 @@ _KEYS: dict[str, Any] = {
     "solver": Solver,
     "accuracy": Accuracy,
     **{f"study.{name}": study for name, study in STUDIES.items()},
-    **{f"effects.{name}": effect for name, effect in EFFECTS.items()},
+    **{f"effects.{name}": effect for name, effect in OF_EFFECTS.items()},
     **{
         f"{place}.{name}": TableFile if name == "table" else profile
         for place in (
@@ -147,7 +147,7 @@ def _advice(place: list[str], given: Any) -> str:
     """What to write where a table or a list of tables stands in the other's place, or in a value's."""
     key = place[-1]
     if place[0] == "effects" and len(place) == 2:
-        required = ", ".join(f"{field.name} = ..." for field in _required(EFFECTS[key]))
+        required = ", ".join(f"{name} = ..." for name in _required(OF_EFFECTS[key]))
         return f" Write {key} = {{ {required} }}." if required else f" Write {key} = {{}}."
     if len(place) == 1:
         below = "" if isinstance(given, dict | list) else ", and its keys on lines below"
@@ -155,8 +155,15 @@ def _advice(place: list[str], given: Any) -> str:
     return ""
 
 
-def _required(table: Any) -> list[Any]:
-    return [f for f in dataclass_fields(table) if f.default is MISSING and f.default_factory is MISSING]
+def _required(table: type) -> list[str]:
+    """Names of the fields that a table must have; the first one where any of them will do."""
+    if issubclass(table, BaseModel):
+        return list(table.model_fields)[:1]
+    return [
+        field.name
+        for field in dataclass_fields(table)
+        if field.default is MISSING and field.default_factory is MISSING
+    ]
 
 
 def _header(name: str) -> str:

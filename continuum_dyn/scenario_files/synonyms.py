@@ -50,13 +50,17 @@ SYNONYMS: dict[str, dict[str, str]] = {
         "a table [[loads]] for each; they need no effect": "load loads force forces",
     },
     "effects.gravity": {"acceleration = [0.0, -9.81]": "g value magnitude direction vector"},
-    "effects.material_damping": {"retardation_time (s)": "eta viscosity tau time coefficient damping value"},
+    "effects.material_damping": {
+        "retardation_time (s)": "eta viscosity tau time coefficient value",
+        "damping_ratio": "zeta damping ratio",
+    },
     "cables": {
         "hole_offset (m)": "offset radius r d y distance hole_radius position hole eccentricity",
         "tension (N)": "force pull load f t tau",
         "cable_displacement (m)": "displacement length pulled stroke delta",
         "cable_stiffness (N/m)": "stiffness k ea",
         "friction": "mu friction_coefficient",
+        "start": "from first_disk sheath",
         "anchor": "end disk last_disk termination",
     },
     "loads": {

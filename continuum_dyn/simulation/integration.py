@@ -1,7 +1,7 @@
-"""The equations of motion through a solver with SciPy's interface, from corner to corner.
+"""Integration of the equations of motion by a solver with SciPy's interface, from corner to corner.
 
-No step crosses a corner of a profile. Solvers restart there; the chain's own only where inputs jump or a
-wave begins: elsewhere accelerations are continuous, and the step size carries over.
+No step crosses a corner of a profile. Solvers restart there; the chain's own only if inputs jump or a
+wave starts: at other corners accelerations are continuous, and the step size continues.
 """
 
 import warnings
@@ -43,7 +43,7 @@ def with_step(dynamics: Dynamics, solver: Solver, timeline: Timeline, y: np.ndar
 
 
 def warm_up(dynamics: Dynamics, solver: Solver, interval: Interval) -> None:
-    """Compile or load the kernels of the method, so that what follows is solving alone."""
+    """Compile or load the kernels of the method, so that later calls only solve."""
     method = METHODS[solver.method]
     brief = Interval(interval.start, interval.start + BRIEF, interval.pieces)
     y = dynamics.state(np.zeros((dynamics.scene.arm.segments, dynamics.dofs)))

@@ -20,7 +20,7 @@ from statics.support.interruption import Interruption
 
 
 class Motion:
-    """Everything that the integration of a scenario's motion starts from.
+    """All that the integration of a scenario's motion needs.
 
     ``samples`` (s) are the times that are requested, ``timeline`` the time, cut at corners of the inputs.
     Raises ``InputError`` for a study without motion.
@@ -54,14 +54,14 @@ class Motion:
         return choose(self.dynamics, self.start, self.timeline.first, self.study.duration, exact)
 
     def choose_solver(self) -> Solver:
-        """The scenario's solver, with the method and the step chosen if they are the program's to choose."""
+        """The scenario's solver, with the method and the step chosen if the scenario does not fix them."""
         solver = self.scenario.solver
         if solver.chooses_method:
             solver = replace(solver, method=self.choose_method().method)
         return with_step(self.dynamics, solver, self.timeline, self.start)
 
     def warm_up(self, solver: Solver) -> None:
-        """Compile or load the kernels of the method, so that what follows is solving alone."""
+        """Compile or load the kernels of the method, so that later calls only solve."""
         warm_up(self.dynamics, solver, self.timeline.first)
 
     def monitor(

@@ -1,4 +1,4 @@
-"""Requests that come to nothing: quantities without an effect, drives without a change, studies in vain."""
+"""Warnings about requests without effect: unused quantities, drives without a change, studies in vain."""
 
 from collections.abc import Iterator
 from math import inf

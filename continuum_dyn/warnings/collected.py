@@ -32,7 +32,7 @@ AFTER: "tuple[Callable[[Run], Iterator[str]], ...]" = (
 
 
 def warnings_of(run: "Run") -> tuple[str, ...]:
-    """Warnings of all that is odd about a run and its scenario, a sentence or two for each."""
+    """All warnings about a run and its scenario, one or two sentences each."""
     with np.errstate(all="ignore"):
         before = [text for check in BEFORE for text in check(run.scenario)]
         return (*before, *(text for check in AFTER for text in check(run)))

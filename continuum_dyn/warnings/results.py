@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 LARGEST_STRAIN = 0.02
 """Bending strain above which few cores stay elastic."""
 STILL = 1e-9
-"""Largest travel over the arm's length that is only rounding."""
+"""Travel over the arm's length below which nothing moves: rounding leaves some."""
 
 
 def bending_strain(run: "Run") -> float | None:

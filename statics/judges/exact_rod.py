@@ -62,7 +62,7 @@ POINTS, UP_TO_POINTS, TO_THE_END = _gauss(32)
 
 
 class RodError(ContinuumError):
-    """No stable equilibrium of the exact rod was found under the full loads."""
+    """No stable equilibrium of the exact rod is found under the full loads."""
 
 
 @dataclass(frozen=True)
@@ -113,8 +113,8 @@ def exact_rod(scene: Scene, tension: object = None) -> RodShape:
     """The exact rod of this scene at rest under these tensions, shape (cables,), N.
 
     A cantilever from the arm's base, followed from no load to the full loads as long as it is
-    stable. Effects that exist in motion only play no part. Raises ``InputError`` for tensions that do
-    not fit and for what the rod does not know, ``RodError`` if it buckles, snaps or comes to
+    stable. Effects that exist in motion only are ignored. Raises ``InputError`` for tensions that do
+    not fit and for effects that the rod does not have, ``RodError`` if it buckles, snaps or comes to
     the end of its geometry before the full loads are on.
     """
     values = scene.check_tension(tension)[: scene.cables]
@@ -148,6 +148,8 @@ def _check(scene: Scene) -> None:
         raise InputError("the exact rod does not know loads that change in time.")
     if any(kind.coupled for kind in scene.cable_kinds):
         raise InputError("the exact rod knows cables of given tension, without friction.")
+    if any(cable.start for cable in scene.arm.cables[: scene.cables]):
+        raise InputError("the exact rod knows cables that start at the base.")
     if scene.has_followers:
         raise InputError("the exact rod does not know loads that turn with their disk.")
     if scene.arm.payloads:
@@ -182,7 +184,7 @@ def _rod(scene: Scene, tension: np.ndarray) -> _Rod:
 
 
 def _given(number: float | None) -> float:
-    """A number of the arm, which the scene has checked to be there."""
+    """A number of the arm, which the scene guarantees."""
     assert number is not None
     return number
 

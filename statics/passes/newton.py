@@ -1,8 +1,8 @@
 """Newton's method on the chain that ends in a stable equilibrium.
 
 The potential energy must fall (Armijo); pivot blocks are made positive as they come, so that every step
-descends. At a saddle the search stops, so that it can be reported, and goes on along the direction of
-negative curvature that the elimination knows. A trial beyond a geometric limit counts as infinitely high.
+descends. At a saddle the search stops, so that it can be reported, and continues along the direction of
+negative curvature from the elimination. A trial beyond a geometric limit counts as infinitely high.
 
 Arguments travel in groups:
 
@@ -51,10 +51,10 @@ Arm = tuple[np.ndarray, np.ndarray, np.ndarray]
 Work = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 ROUNDING = 1e-11
-"""Smallest predicted fall of the potential, over its scale, that can be seen in it."""
+"""Smallest predicted fall of the potential, over its scale, above rounding."""
 FAR_FROM_REST = 1e-6
-"""Newton step (rad, or elongation over L0) above which one from where all forces balance goes elsewhere: the
-matrix is singular there."""
+"""Largest Newton step (rad, or elongation over L0) at balanced forces; a larger one means that the matrix is
+singular."""
 
 
 @compiled
@@ -172,7 +172,7 @@ def shorten(
 
 @compiled
 def lengthen(passes: RestPasses, q: np.ndarray, factor: float, longest: float, arm: Arm, work: Work) -> None:
-    """Double an accepted step while that lowers the potential: an indefinite matrix says little of length."""
+    """Double an accepted step while that lowers the potential: an indefinite matrix predicts no length."""
     scalars = work[6]
     potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
     while 2.0 * factor <= longest:
@@ -235,7 +235,7 @@ def find_stable(
     """Move ``q``, shape (n, dofs), to an equilibrium; ``unit`` is the length elongations compare with.
 
     Returns the outcome (STABLE, UNSTABLE, LIMIT, NOT_FOUND) and the iterations (at most ``most``). From an
-    unstable one ``leave_saddle`` knows the way on.
+    unstable one ``leave_saddle`` continues.
     """
     n, dofs = q.shape
     chain, pivots, scalars = (

@@ -1,9 +1,9 @@
 """A search for equilibria under loads without a potential.
 
-Where no energy falls, the arm is released instead: it creeps as in a viscous bath, D dq/dt = -r(q), in
-implicit steps that lengthen as the residual r falls, and so end as Newton's (pseudo-transient continuation,
-Kelley and Keyes 1998). It leaves what is unstable in such a bath, and knows of no other stability. The
-matrix need not be exact: then the last steps converge linearly.
+Without an energy to minimize, the arm is released in a viscous fluid, D dq/dt = -r(q). The implicit steps
+grow as the residual r falls, so the last ones are Newton steps (pseudo-transient continuation, Kelley and
+Keyes 1998). It leaves equilibria that are unstable in such a fluid, and cannot judge any other stability. If
+the matrix is not exact, the last steps converge linearly.
 """
 
 import math
@@ -164,8 +164,8 @@ def examine_balance(
 
     Returns elastic energy, gravity energy (J), the largest residual (N or N m), the number of unstable
     directions, or UNKNOWN, and whether the forces balance. The signs of an unsymmetric matrix do not show
-    oscillations that grow. Friction only takes energy: with the tensions kept as they are the rest has a
-    potential, and at a minimum of that nothing grows.
+    oscillations that grow. Friction only dissipates energy: at fixed tensions the other loads have a
+    potential, and at its minimum nothing grows.
     """
     n, dofs = q.shape
     chain, scalars = np.empty((n, passes.chain_columns)), np.empty(SCALARS)

@@ -1,4 +1,4 @@
-"""Common parts of both searches for an equilibrium: outcomes, limits, steps in unlike units."""
+"""Common parts of both searches for an equilibrium: outcomes, limits, steps in mixed units."""
 
 import math
 
@@ -10,7 +10,7 @@ from statics.kernels.slots import SCALARS
 from statics.passes.rest_passes import RestPasses
 
 STABLE, UNSTABLE, LIMIT, NOT_FOUND, BALANCED = 0, 1, 2, 3, 4
-"""Outcomes of a search; BALANCED is an equilibrium of which it is not known whether it is stable."""
+"""Outcomes of a search; BALANCED is an equilibrium of unknown stability."""
 UNKNOWN = -1
 """Number of an equilibrium's unstable directions if it is not known."""
 
@@ -91,7 +91,7 @@ def pose_pass(
     chain: np.ndarray,
     scalars: np.ndarray,
 ) -> None:
-    """Outward, at rest: what the inward passes need, lengths of coupled cables first."""
+    """Outward pass at rest for the inward passes, after the lengths of coupled cables."""
     n = q.shape[0]
     if passes.lengths != 0:
         run(passes.lengths, n, scalars, q, inputs, segments, chain)
@@ -101,7 +101,7 @@ def pose_pass(
 
 @compiled
 def are_small(residual: np.ndarray, sizes: np.ndarray, unit: float) -> bool:
-    """Whether no unbalanced force is large in units of the forces that meet there, or not a number.
+    """Whether every unbalanced force is small relative to the forces that contribute to it.
 
     ``sizes`` are these forces, and then the segment's stiffness against bending; ``unit`` is the length that
     makes torques of forces.
@@ -125,7 +125,7 @@ def are_small(residual: np.ndarray, sizes: np.ndarray, unit: float) -> bool:
 def is_balanced(
     passes: RestPasses, disks: np.ndarray, chain: np.ndarray, residual: np.ndarray, unit: float
 ) -> bool:
-    """Whether the unbalanced forces at the q that ``chain`` is of are small, whatever led there.
+    """Whether the unbalanced forces at the q of ``chain`` are small.
 
     ``unit`` is the length that makes torques of forces.
     """

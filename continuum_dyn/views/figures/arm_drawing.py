@@ -37,15 +37,15 @@ def draw_disks(
 def draw_cables(
     axes: Any, log: Log, columns: Mapping[str, np.ndarray], rows: Sequence[int], per_si: float
 ) -> None:
-    """Draw each cable from the base to its anchor at these rows: dotted while slack."""
+    """Draw each cable from its start to its anchor at these rows: dotted while slack."""
     centre, across = poses(columns, np.array(rows))
     names = legend_labels([f"cable {name}" for name in log.cables])
-    each = zip(names, log.arm["hole_offset"], log.arm["anchor"], strict=True)
-    for number, (name, offset, anchor) in enumerate(each):
+    each = zip(names, log.arm["hole_offset"], log.bare_disks, strict=True)
+    for number, (name, offset, bare) in enumerate(each):
         slack = columns["tension"][rows, number] <= 0.0
         look = {"color": COLORS[1 + number % (len(COLORS) - 1)], "lw": 1.1, "zorder": 2.5, "gid": "cables"}
         label = f"{name}\n(dotted: slack)" if slack.any() else name
-        holes = per_si * (centre + offset[:, None] * across)[:, : anchor + 1]
+        holes = per_si * (centre + offset[:, None] * across)[:, bare]
         for points, dotted in zip(holes, slack, strict=True):
             axes.plot(*points.T, ls=":" if dotted else "-", **look)
         axes.plot([], [], label=label, **look)

@@ -11,7 +11,7 @@ from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.views.figures.arm_drawing import draw_cables, draw_disks, draw_loads
 from continuum_dyn.views.figures.axis_units import axis
-from continuum_dyn.views.figures.backbone import backbone, disk_reach
+from continuum_dyn.views.figures.backbone import backbone, disk_reach, poses
 from continuum_dyn.views.figures.branches import rows_falling
 from continuum_dyn.views.figures.loads import acting_loads
 from continuum_dyn.views.figures.log_series import LogSeries
@@ -37,8 +37,11 @@ def rows_drawn(log: Log, series: LogSeries, at: Sequence[float]) -> list[int]:
 
 def box(log: Log, series: LogSeries, rows: Sequence[int]) -> tuple[float, float]:
     """Width and height that the shapes take with their disks, m."""
-    shapes = backbone(series.columns, np.array(rows), ARC_POINTS).reshape(-1, 2)
-    width, height = np.ptp(shapes, axis=0) + 2.0 * disk_reach(log.arm, series.columns)
+    cores = backbone(series.columns, np.array(rows), ARC_POINTS).reshape(-1, 2)
+    centre, across = poses(series.columns, np.array(rows))
+    reach = disk_reach(log.arm, series.columns) * across
+    ends = [cores, (centre - reach).reshape(-1, 2), (centre + reach).reshape(-1, 2)]
+    width, height = np.ptp(np.concatenate(ends), axis=0)
     return float(width), float(height)
 
 

@@ -78,7 +78,7 @@ def _reading(playback: Playback) -> str:
         said.append("**Cables:** as wide as their tension at the base; dashed while slack.")
     if playback.moves:
         said.append("**Light grey:** the static equilibrium of the moment's inputs, if the log has it.")
-    said.append("**Thin line at the tip:** its way.")
+    said.append("**Thin line at the tip:** its path.")
     if playback.loads(playback.samples[:1]):
         said.append("**Arrows:** loads on disks.")
     if playback.scenario is None:

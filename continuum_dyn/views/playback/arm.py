@@ -106,18 +106,18 @@ def _core(playback: Playback, rows: np.ndarray, measures: Measures) -> dict[str,
 def _cables(
     playback: Playback, rows: np.ndarray, measures: Measures, centre: np.ndarray, across: np.ndarray
 ) -> dict[str, Drawn]:
-    """Each cable through its holes to its anchor: as wide as its tension, and dashed while it has none."""
+    """Each cable from its start to its anchor: as wide as its tension, and dashed while it has none."""
     arm = playback.log.arm
     parts: dict[str, Lines] = {}
     cables = zip(
         playback.log.cables,
         arm["hole_offset"],
-        arm["anchor"],
+        playback.log.bare_disks,
         distinct_colors(len(playback.log.cables)),
         strict=True,
     )
-    for number, (name, offset, anchor, color) in enumerate(cables):
-        holes = (centre + offset[:, None] * across)[:, : anchor + 1]
+    for number, (name, offset, bare, color) in enumerate(cables):
+        holes = (centre + offset[:, None] * across)[:, bare]
         tension = playback.columns["tension"][rows, number]
         taut, drawn = tension > 0.0, own_color(playback, int(color))
         entity = f"cables/{escape_entity_path_part(plain_line(name))}"

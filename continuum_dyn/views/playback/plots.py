@@ -44,6 +44,7 @@ class Plot:
     series: Sequence[Series]
 
 
+@np.errstate(over="ignore")  # a log may hold any finite numbers, and some have no mm
 def plots_of(playback: Playback) -> dict[str, Plot]:
     """Plots by the last part of their entity, without those that the log has no data for."""
     columns = playback.columns
@@ -53,7 +54,7 @@ def plots_of(playback: Playback) -> dict[str, Plot]:
         "tension": Plot(QUANTITIES["tension"].label, tension),
         "cable_displacement": Plot("cable displacement (mm)", _lengths(inputs, "cable_displacement")),
         "load_factor": Plot(QUANTITIES["load_factor"].label, _load_factors(columns)),
-        "base": Plot("base (mm)", _lengths(inputs, "base_x")),
+        "base": Plot(_base_title(inputs), _lengths(inputs, "base_x")),
         "base_theta": Plot(QUANTITIES["base_theta"].label, _angles(inputs)),
         "tip_x": Plot("tip x (mm)", _tip(playback, "disk_x")),
         "tip_y": Plot("tip y (mm)", _tip(playback, "disk_y")),
@@ -80,6 +81,10 @@ def _lengths(inputs: Mapping[str, Input], name: str) -> list[Series]:
     """Inputs that are lengths, mm."""
     lines = inputs[name].lines if name in inputs else {}
     return [Series(words, MILLI * values) for words, values in lines.items()]
+
+
+def _base_title(inputs: Mapping[str, Input]) -> str:
+    return f"{inputs['base_x'].words if 'base_x' in inputs else 'base'} (mm)"
 
 
 def _angles(inputs: Mapping[str, Input]) -> list[Series]:

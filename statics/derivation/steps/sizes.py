@@ -1,4 +1,4 @@
-"""Sizes of the forces that meet in each row of the residual: in units of these it must be small at rest.
+"""Sizes of the forces that contribute to each row of the residual, which must be small relative to them.
 
 An outward pass names the sizes at each site: what its pairs add, one by one, and what rounding of the
 coordinates and of cable lengths can leave. An inward pass adds them up as the residual's own pass adds up the
