@@ -84,7 +84,8 @@ def open_log(path: Path) -> Iterator[h5py.File]:
     except MemoryError as error:
         raise LogError(f"{path}: larger than memory.") from error
     except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError) as error:
-        told = f"cannot be read: {os.strerror(error.errno)}" if getattr(error, "errno", None) else "damaged"
+        number = error.errno if isinstance(error, OSError) else None
+        told = f"cannot be read: {os.strerror(number)}" if number else "damaged"
         raise LogError(f"{path}: {told}. If it is a log, run its scenario again.") from error
 
 

@@ -48,7 +48,7 @@ def refusal(folder: Path, text: str) -> str:
         ("[arm]", "[[arm]]", "Write [arm]."),
         ('[arm]\npreset = "rone2012"', 'arm = "rone2012"', "Write [arm], and its keys on lines below."),
         ("hole_offset", "radius", "unknown key 'radius'. Write hole_offset (m)."),
-        ('preset = "rone2012"', "diameter = 1e-3", "Write core_radius (m), half the diameter."),
+        ('preset = "rone2012"', "diameter = 1e-3", "core_outer_radius of a tube: half the diameter."),
         ('preset = "rone2012"', "g = 9.81", "Write gravity = { acceleration = [0.0, -9.81] } in [effects]."),
         ("gravity = { acceleration =", "gravity = { g =", "Write acceleration = [0.0, -9.81]."),
         ("inertia = {}", "friction = {}", "unknown effect 'friction'. Write friction of [[cables]]."),

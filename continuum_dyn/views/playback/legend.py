@@ -57,7 +57,7 @@ def _length_scale(left: float, y: float, size: float) -> Lines:
     steps = np.array([1.0, 2.0, 5.0]) * 10.0 ** np.floor(np.log10(size / 3))
     length = steps[np.sum(steps[1:] <= size / 3)]
     bar = np.array([[[left, y], [left + length, y]]])
-    return Lines(bar, BLACK, 2.0, 5.0, labels=[f"{1e3 * length:g} mm"])
+    return Lines(bar, BLACK, 2.0, 5.0, labels=[f"{1e3 * float(length):g} mm"])
 
 
 def _curvature_scale(left: float, right: float, y: float, most: float) -> dict[str, Drawn]:

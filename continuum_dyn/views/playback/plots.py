@@ -44,6 +44,7 @@ class Plot:
     series: Sequence[Series]
 
 
+@np.errstate(over="ignore")  # a log may hold any finite numbers, and some have no mm
 def plots_of(playback: Playback) -> dict[str, Plot]:
     """Plots by the last part of their entity, without those that the log has no data for."""
     columns = playback.columns
