@@ -126,7 +126,8 @@ class ArcLength:
     """The bordered systems of one scene along one ramp of inputs, shape (points, inputs)."""
 
     def __init__(self, solver: StaticSolver, ramp: np.ndarray) -> None:
-        self.solver, self.kernel, self.ramp = solver, solver.kernel, ramp
+        self.solver, self.kernel = solver, solver.kernel
+        self.ramp = np.ascontiguousarray(ramp, dtype=float)
         segments, dofs = solver.scene.arm.segments, len(solver.scene.coordinates)
         self.chain = np.empty((segments, self.kernel.widths["chain"]))
         units = np.array([1.0, solver.scene.arm.rest_length])[:dofs]

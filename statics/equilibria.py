@@ -192,6 +192,7 @@ class StaticSolver:
         """
         arm = self.scene.arm
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start
+        inputs = np.ascontiguousarray(inputs, dtype=float)  # rows of several lists have strides
         self._remember(before)
         if not self.rubbing.size or isinstance(before, Slip):
             return self._release(q, inputs)

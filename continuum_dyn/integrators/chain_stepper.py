@@ -23,6 +23,9 @@ LEAST_ROUNDINGS = 100.0
 
 CORNER_STEP = 0.1
 """Largest first step after a corner of an input, in radians of the arm's lowest frequency."""
+DRIVE_STEP = 0.5
+"""Longest step, in radians of a wave of the inputs, whose work is interpolated within a step. Waves that are
+faster than the arm's lowest frequency are resolved as far as they move it."""
 SAME_SLOPE = 1e-9
 """Relative difference below which two slopes of an input are one."""
 
@@ -61,8 +64,9 @@ class ChainStepper(Stepper):
         self.tolerance = tolerance
         self.slip_speed = dynamics.slip_speed
         rates_count = tableau.explicit or np.isfinite(self.slip_speed)
-        self.lasting = 1.0 / dynamics.frequency if rates_count else 0.0
-        self.corner_step = CORNER_STEP / dynamics.frequency
+        self.frequency = dynamics.frequency
+        self.lasting = 1.0 / self.frequency if rates_count else 0.0
+        self.corner_step = CORNER_STEP / self.frequency
         shape = (BATCH + 1, dynamics.scene.arm.segments, dynamics.dofs)
         self.records = (
             np.empty(shape[0]),
@@ -120,16 +124,25 @@ class ChainStepper(Stepper):
             most = max(MOST_GROWTH * (t - before), LEAST_ROUNDINGS * np.spacing(t))
             self.next_step = min(self.next_step, most)
 
+    @property
+    def _longest_step(self) -> float:
+        """Longest step (s) in the current span: a stiff arm follows a slow drive without an error to see."""
+        amplitude, frequency = self.spans[self.span].pieces[:, 3:5].T
+        slow = frequency[(amplitude != 0.0) & (frequency <= self.frequency)]
+        fastest = float(np.max(slow, initial=0.0))
+        return DRIVE_STEP / fastest if fastest > 0.0 else np.inf
+
     def _advance(self, rows: slice) -> tuple[int, int]:
         """Steps within one span from the first of these rows on: how many, and how they ended."""
         tableau = self.tableau if self.knows_acceleration else SDIRK4
+        coefficients = tableau.a, tableau.c, tableau.error_weights, tableau.predictor
         ended, taken, self.next_step, self.rate, rejected, iterations = runge_kutta.advance(
             self.kernel.passes,
             self.spans[self.span].end,
             self.next_step,
             self.rate,
             tuple(column[rows] for column in self.records),
-            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, self.lasting, self.slip_speed),
+            (*coefficients, self.lasting, self.slip_speed, self._longest_step),
             tableau.order,
             self.tolerance,
             self._arm,

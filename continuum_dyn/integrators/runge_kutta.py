@@ -20,7 +20,7 @@ Arguments travel in groups:
 
 - ``arm``: pieces of the inputs' profiles, segment table, disk table;
 - ``method``: a, c, error weights, predictor of the tableau; ``lasting``, the time (s) for which an error of
-  the rates is taken to last; ``slip_speed`` (m/s), infinite without friction;
+  the rates is taken to last; ``slip_speed`` (m/s), infinite without friction; the longest step (s);
 - ``stages``: q, u, w, shape (stages, n, dofs);
 - ``workspace``: chain; six arrays like q, shape (6, n, dofs); scalars;
 - ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,
@@ -51,7 +51,7 @@ from statics.kernels.slots import (
 from statics.passes.search import copy
 
 Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, float]
+Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, float, float]
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 MOST_ITERATIONS = 8
@@ -59,6 +59,8 @@ MOST_ITERATIONS = 8
 STAGE_PART = 0.02
 """Largest error of a stage's equations, over the tolerance, and of its rates, over the slip speed."""
 ROOT_5 = math.sqrt(5.0)
+LEAST_FALL = 0.03
+"""Smallest ratio of one step's error estimate to that of the step before that is believed."""
 SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 
 GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
@@ -169,7 +171,7 @@ def step_once(
     stage's. Returns the error (m; infinite if a stage did not converge), the rate of convergence, and the
     Newton iterations.
     """
-    a, c, error_weights, predictor, lasting, slip_speed = method
+    a, c, error_weights, predictor, lasting, slip_speed, _ = method
     stage_q, stage_u, stage_w = stages
     chain, work, scalars = workspace
     count, n, dofs = stage_w.shape
@@ -220,9 +222,11 @@ def shrinkage(part: float, order: int) -> float:
 def growth(part: float, last_part: float, order: int) -> float:
     """Factor for the step after one whose error was ``part`` of the tolerance, after one of ``last_part``.
 
-    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds.
+    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds. An estimate that
+    falls suddenly may be passing through zero, and is believed in part.
     """
-    factor = SAFETY * part ** (-0.7 / order) * last_part ** (0.3 / order)
+    believed = max(part, LEAST_FALL * last_part)
+    factor = SAFETY * believed ** (-0.7 / order) * last_part ** (0.3 / order)
     return min(MOST_GROWTH, max(MOST_SHRINK, factor))
 
 
@@ -259,6 +263,7 @@ def advance(
             return FINISHED, taken, h, rate, rejected, iterations
         if h < 16.0 * 2.2e-16 * abs(t) or h < 1e-300:
             return TOO_SMALL, taken, h, rate, rejected, iterations
+        h = min(h, method[6])
         reaches = h >= 0.99 * left
         step = left if reaches else min(h, 0.5 * left)
         copy(accelerations[taken], stages[2][0])

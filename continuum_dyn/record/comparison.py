@@ -63,7 +63,7 @@ def _tips(along: str, group: Mapping[str, np.ndarray], at: np.ndarray) -> np.nda
 
 
 def _allowed(log: Log) -> float:
-    length = float(log.arm["disks"] * np.mean(log.arm["disk_spacing"]))
+    length = log.arm_length
     if "tip_error" in log.attributes:
         return log.attributes["tip_error"]
     tolerance = log.attributes.get("rtol", 0.0) + log.attributes.get("atol", 0.0)

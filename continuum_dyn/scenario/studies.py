@@ -102,7 +102,7 @@ class RampStudy(StudyKind):
         """Inputs of each point of the ramp, shape (points, inputs)."""
         ramps = np.array(scenario.ramps).T if scenario.ramps else np.empty((1, 0))
         constant = scenario.initial_inputs[ramps.shape[1] :]
-        return np.ascontiguousarray(np.hstack([ramps, np.tile(constant, (len(ramps), 1))]))
+        return np.hstack([ramps, np.tile(constant, (len(ramps), 1))])
 
 
 @dataclass(frozen=True, config=STRICT)

@@ -52,6 +52,11 @@ def test_every_figure_is_in_the_glossary(step: Settling) -> None:
     assert step.missing == {}
 
 
+def test_log_with_a_spacing_for_each_disk_settles_as_that_with_one(step: Settling, tmp_path: Path) -> None:
+    lists = ('preset = "rone2012"', 'preset = "rone2012"\ndisk_spacing = [0.02, 0.02, 0.02, 0.02]')
+    assert settled(edited(STEP, tmp_path, lists), tmp_path).figures == step.figures
+
+
 @pytest.mark.parametrize("file", [STEP, LIGHT])
 def test_ring_down_is_that_of_the_lowest_mode_at_the_last_equilibrium(file: Path, tmp_path: Path) -> None:
     """Of the motion and of its linearization: the two share no formula of the fit."""

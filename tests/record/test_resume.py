@@ -1,5 +1,6 @@
 """A motion that was broken off goes on from its log to the answer of an unbroken one."""
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,10 +17,11 @@ from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.record.resuming import resumption_of
 from continuum_dyn.record.writing import columns_of
-from continuum_dyn.scenario.intervals import cut_into_intervals
-from continuum_dyn.scenario.solver import Solver
+from continuum_dyn.scenario.intervals import cut_into_intervals, inputs_at
+from continuum_dyn.scenario.profiles import Sine
+from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
-from continuum_dyn.simulation import samples
+from continuum_dyn.simulation import Run, samples
 from continuum_dyn.simulation.resumption import Resumption
 from continuum_dyn.simulation.trajectory import Trajectory, observe_trajectory
 from statics import Outcome
@@ -94,6 +96,76 @@ def test_it_may_be_broken_off_any_number_of_times(tmp_path: Path) -> None:
         log = read_log(tmp_path / "log.h5")
     assert log.counters["steps"] == 200
     assert tips_apart(resumed(tmp_path / "log.h5"), unbroken.trajectory) < SAME_TIP
+
+
+def resumed_from(run: Run, kept: int) -> Trajectory:
+    """The motion of a run resumed from its first samples."""
+    assert run.trajectory is not None
+    assert run.solver is not None
+    start = Resumption(run.solver, {}, columns_of(run.trajectory.first(kept)))
+    found = simulate(run.scenario, resumption=start).trajectory
+    assert found is not None
+    return found
+
+
+def errors(found: Trajectory, exact: Trajectory) -> np.ndarray:
+    """Largest errors of the tip (m), of the work and of what is dissipated (J)."""
+    tip = np.hypot(*(getattr(found, x)[:, -1] - getattr(exact, x)[:, -1] for x in ("disk_x", "disk_y")))
+    energies = [found.ledger[name] - exact.ledger[name] for name in ("input_work", "dissipated_energy")]
+    return np.array([np.abs(error).max() for error in (tip, *energies)])
+
+
+def brief(name: str, duration: float, without: str = "") -> Scenario:
+    scenario = load_scenario(SCENARIOS / f"{name}.toml")
+    scenario = scenario.without(without) if without else scenario
+    return replace(scenario, study=MotionStudy(duration, 77))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scenario", "methods"),
+    [
+        (brief("step_response", 0.2), ("chain", "LSODA", "BDF")),
+        (brief("step_response", 0.2, without="extension"), ("chain", "explicit", "RK45", "Radau")),
+        (brief("step_response", 0.1, without="material_damping"), ("midpoint", "explicit")),
+        (brief("friction_motion", 3.0), ("chain", "Radau")),
+        (brief("shaken_base", 0.5), ("chain", "LSODA")),
+        (brief("length_driven", 0.2), ("chain", "LSODA")),
+    ],
+    ids=lambda value: value.title if isinstance(value, Scenario) else "",
+)
+def test_resumed_motion_is_as_exact_as_the_unbroken_one_in_work_and_dissipation_too(
+    scenario: Scenario, methods: tuple[Method, ...]
+) -> None:
+    exact = simulate(replace(scenario, solver=Solver("chain", rtol=1e-10, atol=1e-12))).trajectory
+    assert exact is not None
+    for method, rtol in itertools.product(methods, (1e-3, 1e-5, 1e-7)):
+        tolerances = {} if method == "midpoint" else {"rtol": rtol, "atol": 1e-3 * rtol}
+        run = simulate(replace(scenario, solver=Solver(method, **tolerances)))
+        assert run.trajectory is not None
+        assert run.solver is not None
+        step = run.solver.tolerance(scenario.scene.arm.total_length)
+        room = np.array([step, *2 * (step / exact.travel * exact.largest_energy,)])
+        for kept in (1, 2, 7, 40, 70):
+            found = errors(resumed_from(run, kept), exact)
+            assert (found <= 2.0 * errors(run.trajectory, exact) + 3.0 * room).all(), (
+                f"{method} {rtol} {kept}"
+            )
+
+
+@pytest.mark.parametrize("frequency", [1.0, 5.0])
+def test_work_of_a_slow_drive_is_right_within_steps_too(frequency: float) -> None:
+    """A stiff arm follows a base that moves slowly without an error to see, whatever the step."""
+    scenario = brief("shaken_base", 1.0 / frequency)
+    motion = tuple(
+        replace(profile, frequency=frequency) if isinstance(profile, Sine) else profile
+        for profile in scenario.base_motion
+    )
+    found = simulate(
+        replace(scenario, base_motion=motion, solver=Solver("chain", rtol=1e-2, atol=1e-5))
+    ).trajectory
+    assert found is not None
+    assert np.abs(found.ledger_gap).max() < 1e-3 * found.largest_energy
 
 
 def test_method_goes_on_that_had_begun_with_its_tolerances(tmp_path: Path) -> None:

@@ -106,6 +106,16 @@ def test_ramp_that_a_cable_catches_in_does_not_jump_and_its_path_is_followed() -
     np.testing.assert_allclose(path.end.coordinates, points[1].coordinates, atol=1e-12)
 
 
+def test_ramp_takes_rows_of_any_layout_in_memory() -> None:
+    """As lists for one cable of given length and one of given tension make them, one after the other."""
+    scene = driven(*(Cable(f"{r}", r, cable_stiffness=STIFFNESS) for r in (0.008, -0.008)))
+    rows = np.array([[5e-4, 0.0, 0.0, 0.0], [1e-3, -5e-4, 0.0, 0.0], [5e-4, 0.0, 0.0, 0.0]])
+    found, expected = (ramp(StaticSolver(scene), points) for points in (np.asfortranarray(rows), rows))
+    assert [point.tip for point in found] == [point.tip for point in expected]
+    path, its = (follow(StaticSolver(scene), points).points for points in (np.asfortranarray(rows), rows))
+    assert [point.tip for point in path] == [point.tip for point in its]
+
+
 def test_cables_of_given_length_hold_an_arm_up_that_would_buckle() -> None:
     """Upright, and too soft to stand by itself: unstable without cables or under tensions, stable held."""
     offsets = (0.008, -0.008)

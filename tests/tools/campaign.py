@@ -56,9 +56,8 @@ class Campaign:
                 else:
                     print(f"--- seed {seed}, {self.noun} {number}: {told.splitlines()[-1][:200]}", flush=True)
             slowest = max(slowest, time.process_time() - before)
-            done = number + 1 - numbers.start
-            if done % self.reported == 0:
-                print(f"{done} {self.noun}s, {failures.total()} failures", flush=True)
+            if (done := numbers.index(number) + 1) % self.reported == 0:
+                print(f"{done} {self.noun}s, up to {number}, {failures.total()} failures", flush=True)
         faulthandler.cancel_dump_traceback_later()
         seconds, peak = time.monotonic() - started, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
         print(
@@ -90,6 +89,7 @@ def numbers_and_seed(doc: str | None, count: int) -> tuple[range, int]:
     parser = argparse.ArgumentParser(description=doc)
     parser.add_argument("--count", type=int, default=count)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--step", type=int, default=1, help="from one number to the next")
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    return range(asked.first, asked.first + asked.count), asked.seed
+    return range(asked.first, asked.first + asked.step * asked.count, asked.step), asked.seed
