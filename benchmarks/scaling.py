@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from continuum_dyn import Scenario, load_scenario
-from continuum_dyn.experiments.cost import median_seconds
+from continuum_dyn.experiments.cost import least_seconds
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.scenario.studies import MotionStudy
 from continuum_dyn.simulation import Motion
@@ -61,7 +61,7 @@ def main() -> None:
             assert found is not None
             assert reference is not None
             error, steps = tip_distance(found, reference), found.counters["steps"]
-            seconds, call = median_seconds(motion, SOLVER), median_seconds(still, SOLVER)
+            seconds, call = least_seconds(motion, SOLVER), least_seconds(still, SOLVER)
             each = (seconds - call) / steps / disks
             rows[extension, disks] = (steps, each, seconds)
             name = "with" if extension else "without"

@@ -104,7 +104,7 @@ class Case:
         return min(found, key=lambda each: each[2])
 
     def _seconds(self, solver: Solver) -> float:
-        warm_up(self.dynamics, solver, self.stretches[0])
+        warm_up(self.dynamics, solver, self.stretches.first)
         return timed(lambda: self.tip(solver), 11)[0]
 
 
