@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
 
-.PHONY: help run test test-slow test-all check lint format types contracts benchmark pictures docs constraints clean
+.PHONY: help run test test-slow test-all check lint format types contracts benchmark pictures reference docs constraints clean
 
 help: ## List the targets.
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  \1\t/' | expand -t 16
@@ -49,6 +49,9 @@ benchmark: $(VENV)/dev ## Measure speeds; ratios within one run are asserted.
 
 pictures: $(VENV)/dev ## Make the pictures of the README and the pages again.
 	$(BIN)/python docs/pictures.py
+
+reference: $(VENV)/dev ## Write commands, keys, quantities and docstrings into the pages of docs/reference.
+	$(BIN)/python docs/generated_reference.py
 
 docs: $(VENV)/dev ## Make the pages of docs/ into a site, in build/docs.
 	$(BIN)/python -m sphinx -W --keep-going -q -d build/doctrees docs build/docs

@@ -1,6 +1,6 @@
 """Dynamics of planar cable-driven continuum arms by virtual power (Kane's method).
 
-What is exported is loaded when it is first asked for.
+Exported names are loaded when they are first used.
 """
 
 from typing import TYPE_CHECKING

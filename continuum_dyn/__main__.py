@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 
 INTERRUPTED = 130
 
@@ -17,9 +18,12 @@ def main() -> None:
     Until it is loaded there is nothing to keep, and Ctrl-C ends the program at once: raised within the import
     of a library, it might come out as anything.
     """
+    begun = time.perf_counter()
     signal.signal(signal.SIGINT, _end_at_once)
     from continuum_dyn.cli import main
+    from continuum_dyn.commands.terminal.clock import program_begun
 
+    program_begun(begun)
     main()
 
 

@@ -44,14 +44,14 @@ BAD_INPUT = 2
 INTERRUPTED = 130
 
 COMMANDS = (
-    ("Simulate and look", run.run),
-    ("Simulate and look", resume.resume),
-    ("Simulate and look", play.play),
-    ("Simulate and look", plot.plot),
-    ("Ask a log", info.info),
-    ("Ask a log", settle.settle),
-    ("Ask a log", ramp.ramp),
-    ("Ask a log", validate.validate),
+    ("Simulate and view", run.run),
+    ("Simulate and view", resume.resume),
+    ("Simulate and view", play.play),
+    ("Simulate and view", plot.plot),
+    ("Evaluate a log", info.info),
+    ("Evaluate a log", settle.settle),
+    ("Evaluate a log", ramp.ramp),
+    ("Evaluate a log", validate.validate),
     ("Understand", explain.explain),
     ("Understand", modes.modes),
     ("Understand", cost.cost),
@@ -61,15 +61,15 @@ COMMANDS = (
     ("Check the program", hard.hard),
     ("Check the program", reproduce.reproduce),
 )
-"""Each command under the heading that it has in the help, in the order that it is listed in."""
+"""Heading and function of each command, in the order of the help."""
 
 EXIT_STATUSES = """\
 **Exit status**
 
-- 0: answered; that it has not settled is an answer, too
-- 1: not answered, or a check that failed
-- 2: bad input, or what cannot be read or written
-- 130: interrupted; what was computed by then is on disk
+- 0: answered ("not settled" is an answer)
+- 1: not answered, or a check failed
+- 2: bad input, or a file that cannot be read or written
+- 130: interrupted; everything computed so far is saved
 """
 
 
@@ -155,7 +155,7 @@ def _io_message(error: OSError) -> str:
 
 
 def main() -> None:
-    """Run the command line. After Ctrl-C, whatever that comes out as, the exit status is ``INTERRUPTED``."""
+    """Run the command line. After Ctrl-C, by any exception, the exit status is ``INTERRUPTED``."""
     presses = []
 
     def interrupt(_signal: int, _frame: object) -> None:

@@ -15,11 +15,11 @@ from statics.outcome import Outcome
 from statics.scene import Scene
 
 MOST_COORDINATES = 400
-"""Most coordinates of an arm whose modes are asked for: they are all found at once, in some seconds."""
+"""Largest number of coordinates for modes: all are computed together, in some seconds."""
 FEW_COORDINATES = 64
 """Coordinates up to which rates are found for a table, where each effect left out is another structure."""
 MOST_DENSE = 128
-"""Most coordinates whose linearized motion is written out as a matrix."""
+"""Largest number of coordinates whose linearized motion is written out as a matrix."""
 SMALL = 1e-6
 """Change of a bend angle (rad) by which accelerations are differenced."""
 NEUTRAL = 1e-7
@@ -38,7 +38,7 @@ def rates(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[float, flo
 
 
 def linearized(dynamics: Dynamics, y: np.ndarray, span: Interval) -> np.ndarray:
-    """d(rate)/dy. Raises ``InputError`` where it is beyond floating point."""
+    """d(rate)/dy. Raises ``InputError`` if it is beyond floating point."""
     matrix = dynamics.jacobian(span.start, y, span)
     if not np.isfinite(matrix).all():
         raise InputError(
@@ -75,16 +75,16 @@ def fastest_frequency(dynamics: Dynamics, span: Interval, y: np.ndarray) -> floa
 class Mode:
     """A mode of small motion about an equilibrium.
 
-    It swings as exp(-decay t) cos(...), with one rate in ``decay_rates`` (1/s), or it is overdamped and
+    It oscillates as exp(-decay t) cos(...), with one rate in ``decay_rates`` (1/s), or it is overdamped and
     creeps back as two exponentials, with the slow rate and the fast one. A negative rate is one of growth,
-    under loads without a potential: then the mode flutters if it swings, and diverges if it does not.
+    under loads without a potential: an oscillating mode then flutters, an overdamped one diverges.
     ``frequency`` (Hz) is that without its damping, so |eigenvalue| / 2 pi, or the geometric mean of the two
     rates' sizes; ``damping_ratio`` is the mean decay rate over 2 pi times that.
 
     ``shape`` holds the disks' displacements in x and y and their turn, shape (disks, 3), per metre of the
     largest displacement of any disk: 1, 1 and rad/m; the tip's larger one is positive. ``coordinates`` is
-    the same in the segments' coordinates, shape (segments, dofs). Where damping lets the disks move out of
-    step, both are the part in step.
+    the same in the segments' coordinates, shape (segments, dofs). If damping lets the disks move out of
+    phase, both are the part in phase.
     """
 
     frequency: float
@@ -137,11 +137,11 @@ class RestModes:
 
 
 def modes_at_rest(scenario: Scenario) -> RestModes:
-    """The modes about the equilibrium of the scenario's first tensions, which stay as they are.
+    """The modes about the equilibrium of the scenario's first tensions, which are held constant.
 
     Raises ``InputError`` for a scene without inertia, with nodes that carry no mass or with more than
-    ``MOST_COORDINATES`` coordinates, and where no equilibrium is found, or one whose energy says that it is
-    unstable.
+    ``MOST_COORDINATES`` coordinates, and if no equilibrium is found, or one that is unstable by its
+    energy.
     """
     check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
@@ -153,7 +153,7 @@ def modes_at_rest(scenario: Scenario) -> RestModes:
 
 
 def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None:
-    """Least and largest rate (1/s) about rest without an effect; None where there is no such rest."""
+    """Least and largest rate (1/s) about rest without an effect; None if there is no such rest."""
     try:
         without = scenario.without(effect)
         with np.errstate(all="ignore"):
@@ -168,11 +168,11 @@ def rates_without(scenario: Scenario, effect: str) -> tuple[float, float] | None
 
 def still(inputs: np.ndarray) -> Interval:
     """An interval of constant inputs."""
-    return cut_into_intervals(tuple(Constant(float(value)) for value in inputs), 1.0)[0]
+    return cut_into_intervals(tuple(Constant(float(value)) for value in inputs), 1.0).first
 
 
 class _Motion(NamedTuple):
-    """The rates of decay (1/s) of a mode, its angular frequency (rad/s), and its part in step."""
+    """The rates of decay (1/s) of a mode, its angular frequency (rad/s), and its part in phase."""
 
     decay: tuple[float, ...]
     turning: float
@@ -182,7 +182,7 @@ class _Motion(NamedTuple):
 def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]:
     """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first.
 
-    Raises ``InputError`` where the fastest motion is too fast for the slowest to be seen beside it.
+    Raises ``InputError`` if rounding of the fastest motion hides the slowest.
     """
     size, scales = dynamics.size, dynamics.scales()[: dynamics.size]
     jacobian = linearized(dynamics, y, span)[: 2 * size, : 2 * size]
@@ -194,10 +194,10 @@ def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]
 
 
 def _free(accelerations: np.ndarray, scales: np.ndarray) -> list[_Motion]:
-    """Modes of what rates do not change, from d(acceleration)/dq: its eigenvalues are squares of rates.
+    """Modes of an undamped scene, from d(acceleration)/dq: its eigenvalues are squares of rates.
 
-    One below zero swings, one above diverges. A pair of conjugate ones, which only loads without a potential
-    can bring about, flutters: it swings twice, once growing and once dying away.
+    A negative one oscillates, a positive one diverges. A pair of conjugate ones, which only loads without a
+    potential can cause, flutters: it oscillates twice, once growing and once dying away.
     """
     squares, vectors = np.linalg.eig(accelerations)
     _check_spread(np.sqrt(np.abs(squares)), np.sqrt(FARTHEST))
@@ -213,8 +213,8 @@ def _free(accelerations: np.ndarray, scales: np.ndarray) -> list[_Motion]:
 def _damped(jacobian: np.ndarray, scales: np.ndarray) -> list[_Motion]:
     """Modes from the exact Jacobian by (q, u).
 
-    Swinging ones are conjugate pairs; of real eigenvalues each of the slower half, or of those that grow, is
-    joined with the one of the other half whose shape is most like its own.
+    Oscillating ones are conjugate pairs; of real eigenvalues each of the slower half, or of those that grow,
+    is paired with the one of the other half whose shape is most similar.
     """
     eigenvalues, vectors = np.linalg.eig(jacobian)
     _check_spread(np.abs(eigenvalues), FARTHEST)
@@ -229,7 +229,7 @@ def _damped(jacobian: np.ndarray, scales: np.ndarray) -> list[_Motion]:
 
 
 def _check_spread(rates: np.ndarray, farthest: float) -> None:
-    """Raises ``InputError`` for rates (1/s) of which some are zero, or rounding of the largest."""
+    """Raise ``InputError`` for rates (1/s) of which some are zero, or rounding of the largest."""
     slowest, fastest = float(rates.min()), float(rates.max())
     if not slowest * farthest > fastest:
         raise InputError(
@@ -240,14 +240,14 @@ def _check_spread(rates: np.ndarray, farthest: float) -> None:
 
 
 def _in_step(vectors: np.ndarray, scales: np.ndarray) -> np.ndarray:
-    """Shapes turned in phase so that most of each is in step, and that part of them, which is real."""
+    """Shapes rotated in phase so that most of each is in phase, and the real part of them."""
     shapes = vectors / scales[:, None]
     turn = np.exp(-0.5j * np.angle(np.sum(shapes**2, axis=0)))
     return np.real(shapes * turn) * scales[:, None]
 
 
 def check(scene: Scene) -> None:
-    """Raises ``InputError`` for a scene whose modes cannot be found."""
+    """Raise ``InputError`` for a scene whose modes cannot be found."""
     if not scene.has("inertia"):
         raise InputError("modes need the effect 'inertia'. Add inertia = {} to [effects].")
     if scene.arm.massless_nodes:
@@ -263,7 +263,7 @@ def check(scene: Scene) -> None:
 
 
 def _overdamped(decay: np.ndarray, real: np.ndarray, shapes: np.ndarray) -> list[tuple[int, ...]]:
-    """Pairs (slow, fast) of the real eigenvalues, by the likeness of their shapes."""
+    """Pairs (slow, fast) of the real eigenvalues, by the similarity of their shapes."""
     from scipy.optimize import linear_sum_assignment  # slow to load, and motions look at rates alone
 
     slow, fast = np.split(real[np.argsort(decay[real])], 2)

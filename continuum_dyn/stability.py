@@ -1,4 +1,4 @@
-"""Stability where no energy tells: whether small motions about an equilibrium grow.
+"""Stability of equilibria without a potential: whether small motions about them grow.
 
 Loads without a potential can make an arm flutter, which its stiffness alone does not show (Beck 1952, Bolotin
 1963). So the eigenvalues of the linearized motion decide.
@@ -21,7 +21,7 @@ from statics.scene import Scene
 class Growth:
     """The modes that grow about an equilibrium: how many, and how the fastest does.
 
-    ``rate`` in 1/s; ``frequency`` in Hz, zero where it does not swing.
+    ``rate`` in 1/s; ``frequency`` in Hz, zero if it does not oscillate.
     """
 
     modes: int

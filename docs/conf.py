@@ -1,10 +1,6 @@
 """How Sphinx builds these pages: ``make docs``."""
 
-import sys
 from importlib.metadata import version as version_of
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 project = "continuum-dyn"
 author = "The continuum-dyn developers"
@@ -13,9 +9,7 @@ release = version = version_of(project)
 
 extensions = [
     "myst_parser",
-    "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
-    "generated_reference",
 ]
 
 html_theme = "furo"
@@ -32,8 +26,3 @@ html_show_sourcelink = False
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence"]
 myst_heading_anchors = 3
-
-autodoc_member_order = "bysource"
-autodoc_typehints = "none"  # shapes and units stand in the docstrings
-autodoc_default_options = {"members": True}
-maximum_signature_line_length = 88

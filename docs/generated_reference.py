@@ -1,30 +1,20 @@
-"""The parts of the reference that the program tells itself: commands, scenario keys, effects, glossary.
+"""Generated parts of the reference: commands, scenario keys, effects, glossary.
 
-Pages ask for a part by the directive ``{generated} PART``, so what they show is what the program has.
+A page marks where a part belongs by ``<!-- generated: PART -->``; ``make reference`` renews what is there.
 """
 
+import re
 from collections.abc import Callable, Iterable
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
 import typer
-from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
+from python_reference import prose, python_names
 
-import continuum_dyn.effects
-import continuum_dyn.modes
-import continuum_dyn.passes.dynamics
-import continuum_dyn.scenario.intervals
-import continuum_dyn.scenario.profiles
-import continuum_dyn.scenario.solver
-import continuum_dyn.scenario.studies
-import statics
 from continuum_dyn.cli import app
 from continuum_dyn.effects import EFFECTS
-from continuum_dyn.scenario.profiles import PROFILES
-from continuum_dyn.scenario.studies import STUDIES
 from continuum_dyn.scenario_files.keys import KeyTable, key_tables
-from statics.effects import STATIC_EFFECTS
 from statics.outcome import Outcome
 from statics.quantities import QUANTITIES
 
@@ -41,11 +31,6 @@ def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 def code(text: Any) -> str:
     """The text as code, or nothing."""
     return f"`{text}`" if str(text) else ""
-
-
-def prose(docstring: str) -> str:
-    """A docstring as Markdown."""
-    return docstring.replace("``", "`")
 
 
 # Commands
@@ -101,20 +86,20 @@ def exit_statuses() -> str:
 
 
 OF_EFFECTS = """\
-The effects in play: `gravity = {}` takes one with what it has by default. What is not named is in no
-equation. `cables`, `cable_friction` and `loads` are no keys here: they come with `[[cables]]`, their
-`friction`, and `[[loads]]`."""
+The effects to include: `gravity = {}` includes one with its default values. Effects not listed are left
+out of the equations. `cables`, `cable_friction` and `loads` are not keys here: `[[cables]]`, their
+`friction`, and `[[loads]]` include them."""
 
 
 OF_PROFILES = """\
-What drives a motion: a tension, a cable's displacement, a load's factor, the base's `x`, `y` or `angle`.
-A number alone is constant; in a ramp study a list has a value for each point."""
+Inputs of a motion: a tension, a cable's displacement, a load's factor, the base's `x`, `y` or `angle`.
+A number alone is a constant; in a ramp study a list has a value for each point."""
 
 
 def scenario_keys() -> str:
-    """Every table of a scenario file: its keys, what they may be, what they mean."""
+    """Every table of a scenario file, with its keys, their values and meanings."""
     parts, chapter = [], ""
-    for found in key_tables():
+    for found in key_tables()[:-1]:
         name, _, kind = found.heading.partition(" ")
         if name == "[effects]":
             if chapter != name:
@@ -127,18 +112,35 @@ def scenario_keys() -> str:
             title = "The file" if name == "the" else f"`{found.heading}`"
             parts += [f"## {title}", found.text, _keys(found)]
         chapter = name
-    return "\n\n".join(parts)
+    return "\n\n".join([*parts, materials(key_tables()[-1])])
+
+
+def materials(found: KeyTable) -> str:
+    """Every material: its figures, and their source."""
+    rows = [(code(key.name), key.value, key.meaning) for key in found.keys]
+    return "\n\n".join(["## Materials", found.text, table(("name", "figures", "source"), rows)])
 
 
 def _keys(found: KeyTable) -> str:
     rows = [
-        (code(key.name), key.value.replace("profile", "[profile](#profiles)"), *key[2:]) for key in found.keys
+        (
+            code(key.name),
+            key.value.replace("profile", "[profile](#profiles)"),
+            key.default,
+            key.meaning,
+            code(key.example),
+        )
+        for key in found.keys
     ]
-    return table(("key", "value", "by default", "meaning"), rows) if rows else "It has no keys of its own."
+    return (
+        table(("key", "value", "default", "meaning", "example"), rows)
+        if rows
+        else "It has no keys of its own."
+    )
 
 
 def effects() -> str:
-    """Every effect: what it does, what it needs of the arm, where it is from; and the keys of its table."""
+    """Every effect, with its numbers of the arm, its source, and the keys of its table."""
     of_effects = {found.heading: found for found in key_tables()}
     parts = []
     for name, effect in EFFECTS.items():
@@ -148,15 +150,15 @@ def effects() -> str:
         lines += [f"Source: {effect.source}."]
         parts += [f"### `{name}`", prose(_text(effect)), " ".join(lines)]
         found = of_effects[f"[effects] {name}"]
-        if found.keys:
-            parts.append(_keys(found))
+        parts += [f"```toml\n{found.example}\n```"] if found.example else []
+        parts += [_keys(found)] if found.keys else []
     return "\n\n".join(parts)
 
 
 def _text(documented: Any) -> str:
     """A docstring without its indentation; formulas and words that look like marks stay as they are."""
     lines = (documented.__doc__ or "").split("\n")
-    return "\n".join([lines[0], *(line.strip() for line in lines[1:])]).strip().replace("*", "\\*")
+    return "\n".join([lines[0], *(line.strip() for line in lines[1:])]).strip()
 
 
 # Glossary
@@ -165,76 +167,32 @@ def _text(documented: Any) -> str:
 def glossary() -> str:
     """Every quantity: its name, letter, unit and meaning."""
     rows = [
-        (code(q.name), "" if q.letter == q.name else code(q.letter), q.unit, q.meaning.replace("*", "\\*"))
+        (code(q.name), "" if q.letter == q.name else code(q.letter), q.unit, q.meaning)
         for q in QUANTITIES.values()
     ]
     return table(("name", "letter", "unit", "meaning"), rows)
 
 
-# Python
-
-
-def python_names() -> str:
-    """The public names of both packages, and of the modules that people use beside them."""
-    parts = []
-    for module, names in PUBLIC.items():
-        parts += [f"## `{module.__name__}`", prose((module.__doc__ or "").strip())]
-        parts += [_documented(f"{module.__name__}.{name}", getattr(module, name)) for name in names]
-    return "\n\n".join(parts)
-
-
-def _documented(path: str, value: Any) -> str:
-    kind = "autoclass" if isinstance(value, type) else "autofunction" if callable(value) else "autodata"
-    return f"```{{eval-rst}}\n.. {kind}:: {path}\n```"
-
-
-PUBLIC: dict[Any, Iterable[str]] = {
-    continuum_dyn: continuum_dyn.__all__,
-    statics: statics.__all__,
-    continuum_dyn.effects: [
-        effect.__name__ for name, effect in EFFECTS.items() if name not in STATIC_EFFECTS
-    ],
-    continuum_dyn.scenario.profiles: [profile.__name__ for profile in PROFILES.values()],
-    continuum_dyn.scenario.intervals: ["Interval", "cut_into_intervals"],
-    continuum_dyn.scenario.studies: [study.__name__ for study in STUDIES.values()],
-    continuum_dyn.scenario.solver: ["Solver", "Accuracy"],
-    continuum_dyn.passes.dynamics: ["Dynamics", "Observation"],
-    continuum_dyn.modes: ["modes_at_rest", "RestModes", "Mode"],
-}
-
-
 PARTS: dict[str, Callable[[], str]] = {
     part.__name__: part for part in (commands, exit_statuses, scenario_keys, glossary, python_names)
 }
+PAGES = Path(__file__).parent / "reference"
+BLOCK = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end of generated text -->\n)", re.DOTALL)
 
 
-class Generated(SphinxDirective):
-    """``{generated} PART``: what the program tells, as part of the page."""
-
-    required_arguments = 1
-
-    def run(self) -> list[Any]:
-        """The part as nodes."""
-        return self.parse_text_to_nodes(PARTS[self.arguments[0]](), allow_section_headings=True)
+def renewed(page: str) -> str:
+    """The text of a page with its generated parts renewed."""
+    return BLOCK.sub(lambda found: f"{found[1]}\n{PARTS[found[2]]().strip()}\n\n{found[3]}", page)
 
 
-def bars_as_text(_app: Any, _what: str, _name: str, _value: Any, _options: Any, lines: list[str]) -> None:
-    """In docstrings |v| is a size, and no substitution of reStructuredText."""
-    for number, line in enumerate(lines):
-        parts = line.split("``")
-        parts[::2] = [part.replace("|", "\\|") for part in parts[::2]]
-        lines[number] = "``".join(parts)
+def main() -> None:
+    """Write the parts into the pages, and name the pages that changed."""
+    for file in sorted(PAGES.glob("*.md")):
+        page = file.read_text(encoding="utf-8")
+        if (new := renewed(page)) != page:
+            file.write_text(new, encoding="utf-8")
+            print(f"renewed: {file}")
 
 
-def without_factories(*given: Any) -> tuple[str, Any] | None:
-    """Signatures of dataclasses without how they make their defaults."""
-    signature, returns = given[-2:]
-    return signature and (signature.replace("=<factory>", "=..."), returns)
-
-
-def setup(application: Sphinx) -> dict[str, Any]:
-    """Tell Sphinx of the directive."""
-    application.connect("autodoc-process-docstring", bars_as_text)
-    application.connect("autodoc-process-signature", without_factories)
-    application.add_directive("generated", Generated)
-    return {"parallel_read_safe": True}
+if __name__ == "__main__":
+    main()

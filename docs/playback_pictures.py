@@ -24,6 +24,10 @@ from continuum_dyn.views.playback.viewer import LOOPBACK, VIEWER, free_ports
 
 START_TIME = 30.0
 """Longest time until the viewer answers, s."""
+NOTICE_TIME = 8.0
+"""Time after which the viewer's notices about graphics are gone, s."""
+SMALL, LARGE = "1000x700", "1920x1080"
+"""Sizes of the window: letters can be read in a frame of the filmstrip, and the whole on a page."""
 DRAWING_TIME = 1.0
 """What the viewer is given for drawing a moment, s."""
 
@@ -33,19 +37,23 @@ def playback_pictures(log: Path, times: Sequence[float]) -> tuple[Figure, Figure
     with TemporaryDirectory() as folder:
         path = Path(folder) / "playback.rrd"
         recording.save([read_log(log)], path)
-        with viewer_of(path) as viewer:
+        with viewer_of(path, SMALL) as viewer:
             arm = next(view.view_id for view in viewer.get_state().views if view.origin == "/arm")
             frames = [picture(viewer, time, arm) for time in times]
+        with viewer_of(path, LARGE) as viewer:
+            sleep(NOTICE_TIME)
             window = picture(viewer, times[2], None)
     return filmstrip(frames, times), framed(window)
 
 
 @contextmanager
-def viewer_of(path: Path) -> Iterator[ViewerClient]:
-    """A viewer without a window that has the recording open."""
+def viewer_of(path: Path, size: str) -> Iterator[ViewerClient]:
+    """A viewer without a window, of that size in pixels, that has the recording open."""
     (port,) = free_ports(1)
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    process = subprocess.Popen([*VIEWER, "--headless", "--port", str(port), str(path)], **quiet)
+    process = subprocess.Popen(
+        [*VIEWER, "--headless", "--window-size", size, "--port", str(port), str(path)], **quiet
+    )
     try:
         yield connected(port)
     finally:

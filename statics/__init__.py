@@ -1,6 +1,6 @@
 """Statics of planar cable-driven continuum arms by virtual work (Rone and Ben-Tzvi 2012).
 
-What is exported is loaded when it is first asked for.
+Exported names are loaded when they are first used.
 """
 
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Paths of equilibria by arc length: they are followed through folds, where a load cannot grow any further.
+"""Paths of equilibria by arc length, through folds, at which a load cannot grow any further.
 
 Along a ramp of inputs both the coordinates q and the ramp's parameter are unknown, and the step is given as
 a length along the path (Riks 1979; Crisfield 1981; Keller 1977):
@@ -6,8 +6,8 @@ a length along the path (Riks 1979; Crisfield 1981; Keller 1977):
     r(q, parameter) = 0      t . (q - q0, parameter - parameter0) = length
 
 with t the path's unit tangent. The bordered system takes two solutions with the elimination along the chain,
-for -r and for -dr/dplace, so a step costs O(n). Where the tangent turns back the path folds; where the number
-of unstable directions changes and it does not, another path branches off.
+for -r and for -dr/dplace, so a step costs O(n). If the tangent turns back, the path has a fold; if the number
+of unstable directions changes without a fold, another path branches off.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -28,25 +28,29 @@ MOST_CORRECTIONS = 10
 EASY = 4
 """Corrections up to which the next step is longer."""
 LEAST_COSINE = 0.95
-"""Least cosine between two tangents in a row: below it the step is tried again at half its length."""
+"""Smallest cosine between consecutive tangents; below it the step is repeated at half its length."""
 MOST_OFF = 0.1
 """Largest distance of a step from the mean of its tangents: beyond it the step has left the path."""
 SHORTEST_HIDING = 1e-3
-"""Shortest step that may hide two folds and is tried again: what snaps by less may be taken for smooth."""
+"""Shortest step that is searched for two hidden folds or branchings: closer ones may be missed."""
+INVERSE_ITERATIONS = 3
+"""Number of iterations for the least stiff mode."""
+STIFFNESS_DIFFERENCE = 1e-4
+"""Length along the path by which the stiffness is differenced."""
 HALF_DIFFERENCE = 0.5
 """Change of the parameter by which the residual is differenced: tensions and factors are linear in it."""
 NEARBY = 1e-6
-"""The same where cables driven by their length may go slack or catch close by."""
+"""Change of the parameter instead if cables driven by their length may go slack or catch nearby."""
 CATCHING = 1e-3
-"""Longest step in which one may: there the path has a corner."""
+"""Longest step in which a cable goes slack or catches, a corner of the path."""
 NEAR_LIMIT = 1e-3
-"""Clearance below which a path that cannot be followed any further has come to a geometric limit."""
+"""Clearance below which a path that cannot be continued is at a geometric limit."""
 LOCATED = 1e-13
 """Part of a step's length within which folds, limits and points of the ramp are located."""
 BRANCHING_LOCATED = 1e-6
-"""The same for branchings: there the matrix is singular, and has no tangent for what is closer."""
+"""Part of a step's length within which branchings are located: nearer, the matrix is singular."""
 BESIDE_FOLD = 1e-4
-"""The same for the distance from a fold at which the unstable directions on either side of it are counted."""
+"""Distance from a fold, over the step, at which the unstable directions on either side are counted."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +58,7 @@ class Path:
     """Equilibria along a path: those at the ramp's points, folds and branchings, in the order of the path.
 
     ``outcome`` says how it ended: ``completed`` at the ramp's last point, ``geometry_limit``, or
-    ``no_equilibrium`` where it turns back beyond the ramp's first point or cannot be followed any further;
+    ``no_equilibrium`` if it turns back beyond the ramp's first point or cannot be continued;
     ``end`` is where that was, and ``parameters`` are the ramp's at its points, counted from 0.
     """
 
@@ -75,9 +79,9 @@ def follow_path(
 ) -> Path:
     """The path of equilibria along a ramp of tensions through all its folds.
 
-    Each of ``tensions`` is what ``equilibrium`` takes. The path begins at the equilibrium that a search finds
-    from ``start``, or from straight, and takes at most so many ``steps``. Raises ``InputError`` for tensions
-    that do not fit, and for scenes without a potential.
+    Each of ``tensions`` is as for ``equilibrium``. The path starts at the equilibrium that a search finds
+    from ``start``, or from the straight arm, and takes at most ``steps`` steps. Raises ``InputError`` for
+    tensions that do not fit, and for scenes without a potential.
     """
     scene.check_followable()
     solver, ramp = StaticSolver(scene), np.array([scene.check_tension(tension) for tension in tensions])
@@ -102,7 +106,7 @@ def follow(
 
 
 class _PathPoint(NamedTuple):
-    """A point of the path: coordinates, the ramp's parameter, unit tangent, and what the elimination says.
+    """A point of the path: coordinates, parameter of the ramp, unit tangent, results of the elimination.
 
     ``leg`` is the ramp's leg that the path is on, counted from 0: its inputs are linear from the point of
     that number to the next one, and beyond both.
@@ -129,8 +133,9 @@ class ArcLength:
         units = np.array([1.0, solver.scene.arm.rest_length])[:dofs]
         self.by_length = solver.scene.driven_by_length
         self.half_difference = NEARBY if self.by_length else HALF_DIFFERENCE
+        self.push = np.random.default_rng(0).standard_normal((segments, dofs)) / units
         self.weight = segments / units**2
-        """So that a uniform bend of the whole arm counts as its angle, whatever the number of segments."""
+        """Scale by which a uniform bend of the arm counts as its angle, for any number of segments."""
 
     def inputs(self, parameter: float, leg: int) -> np.ndarray:
         """Inputs at a parameter, on a leg of the ramp or on its straight continuation."""
@@ -139,7 +144,7 @@ class ArcLength:
         return self.ramp[leg] + (parameter - leg) * (self.ramp[leg + 1] - self.ramp[leg])
 
     def leg_from(self, point: float, way: float) -> int:
-        """The leg that begins at a point of the ramp, forwards or backwards; at its ends the only one."""
+        """The leg that starts at a point of the ramp, forwards or backwards; at its ends the only one."""
         return min(max(int(point) - (way < 0.0), 0), len(self.ramp) - 2)
 
     def residual(self, q: np.ndarray, inputs: np.ndarray) -> tuple[np.ndarray, float]:
@@ -155,7 +160,7 @@ class ArcLength:
         return (self.residual(q, ahead)[0] - self.residual(q, behind)[0]) / (2 * self.half_difference)
 
     def taut(self, at: _PathPoint) -> list[bool]:
-        """Which cables pull at a point: of those driven by their length some may be slack."""
+        """Whether each cable pulls at a point: those driven by their length may be slack."""
         solver, pose = self.solver, np.empty((len(at.q), 3))
         inputs = self.inputs(at.parameter, at.leg)
         numbers = (inputs, solver.segments, solver.disks, self.chain)
@@ -168,6 +173,27 @@ class ArcLength:
         solver, change = self.solver, np.empty_like(right)
         numbers = (solver.segments, solver.disks, self.chain, right, change)
         return change, newton.solve_exactly(self.kernel.passes, *numbers)
+
+    def softest_push(self, at: _PathPoint) -> np.ndarray:
+        """Forces, shape of q, near those of the least stiff mode, by inverse iteration."""
+        self.residual(at.q, self.inputs(at.parameter, at.leg))
+        push = self.push
+        for _ in range(INVERSE_ITERATIONS):
+            push = self.solve(push)[0] * self.weight
+            push /= np.abs(push).max()
+        return push
+
+    def stiffness(self, q: np.ndarray, inputs: np.ndarray, push: np.ndarray) -> float:
+        """Stiffness against a push: it changes its sign where the matrix is singular."""
+        self.residual(q, inputs)
+        return -1.0 / float(np.sum(push * self.solve(push)[0]))
+
+    def stiffness_along(self, at: _PathPoint, push: np.ndarray) -> tuple[float, float]:
+        """The stiffness at a point, and its derivative along the path."""
+        step = STIFFNESS_DIFFERENCE
+        nearby = self.inputs(at.parameter + step * at.along_parameter, at.leg)
+        here = self.stiffness(at.q, self.inputs(at.parameter, at.leg), push)
+        return here, (self.stiffness(at.q + step * at.along, nearby, push) - here) / step
 
     def tangent_at(self, q: np.ndarray, parameter: float, leg: int = 0) -> tuple[np.ndarray, int, float]:
         """dq/dplace along the path, the number of unstable directions, and the clearance."""
@@ -183,7 +209,7 @@ class ArcLength:
         towards: tuple[np.ndarray, float],
         corrections: int = 0,
     ) -> _PathPoint:
-        """An equilibrium as a point of the path, with the tangent that goes on in that direction."""
+        """An equilibrium as a point of the path, with the tangent in that direction."""
         by_parameter, negative, clearance = self.tangent_at(q, parameter, leg)
         length = np.sqrt(self.inner(by_parameter, by_parameter) + 1.0)
         ahead = self.inner(by_parameter, towards[0]) + towards[1] >= 0.0
@@ -219,8 +245,8 @@ class ArcLength:
     def at_point(self, near: _PathPoint, point: float, way: float) -> tuple[_PathPoint, _PathPoint]:
         """The equilibrium at exactly a point of the ramp, from one within rounding of it.
 
-        As the path comes to it and as it goes on, ``way`` 1 forwards or -1 backwards: the ramp may have a
-        corner there, or turn back.
+        One point before it and one after it, in the direction ``way``, 1 or -1: the ramp may have a corner
+        there, or turn back.
         """
         residual, _ = self.residual(near.q, self.inputs(point, near.leg))
         q = near.q + self.solve(residual)[0]
@@ -233,7 +259,7 @@ class ArcLength:
     def located(
         self, here: _PathPoint, there: float, value: Callable[[_PathPoint], float], within: float = LOCATED
     ) -> tuple[_PathPoint, float] | None:
-        """Where, up to ``there`` along the tangent, a value changes its sign, and how far; None if lost."""
+        """Point up to ``there`` at which a value changes sign, and its distance; None if lost."""
         from scipy.optimize import brentq  # every run loads this module, few follow a path, and SciPy is slow
 
         found: dict[float, _PathPoint] = {0.0: here}
@@ -296,7 +322,7 @@ class _Follower:
         return self._ended(Outcome.NO_EQUILIBRIUM, "it takes more steps than it may")
 
     def _step(self) -> tuple[_PathPoint, Critical, bool] | None:
-        """The next point of the path: a step on, or what comes first on its way; None if there is none."""
+        """Next point of the path: the end of a step, or the first event within it; None if there is none."""
         while self.length > SHORTEST_STEP:
             length, there = self.length, self.arc.corrected(self.here, self.length)
             if there is not None:
@@ -309,7 +335,7 @@ class _Follower:
         return None
 
     def _is_smooth(self, there: _PathPoint, length: float) -> bool:
-        """Whether the path turns little on the way, goes where its tangents say, and hides no two folds."""
+        """Whether the path turns little in a step, agrees with its tangents, and hides no two folds."""
         here, inner = self.here, self.arc.inner
         if self.arc.by_length and length < CATCHING and self.arc.taut(here) != self.arc.taut(there):
             return True
@@ -320,10 +346,24 @@ class _Follower:
         )
         if cosine < LEAST_COSINE or np.sqrt(inner(off, off) + off_parameter**2) > MOST_OFF:
             return False
-        return length < SHORTEST_HIDING or not _hides_folds(here, there, length)
+        return length < SHORTEST_HIDING or not (
+            _hides_folds(here, there, length) or self._hides_branchings(there, length)
+        )
+
+    def _hides_branchings(self, there: _PathPoint, length: float) -> bool:
+        """Whether the cubic with the stiffness and its slopes at both ends changes its sign between them."""
+        if self.here.negative != there.negative:
+            return False
+        push = self.arc.softest_push(there)
+        (start, slope), (end, end_slope) = (
+            self.arc.stiffness_along(point, push) for point in (self.here, there)
+        )
+        if start * end <= 0.0:
+            return False
+        return _turns_through_zero(start, slope * length, end, end_slope * length)
 
     def _cut(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
-        """A step up to the first of what it passes: a limit, a point of the ramp, a fold, a branching."""
+        """A step up to the first event within it: a limit, a point of the ramp, a fold, a branching."""
         arc, here = self.arc, self.here
         at_limit = there.clearance < search.AT_LIMIT
         if at_limit:
@@ -347,7 +387,7 @@ class _Follower:
         return there, Critical.NO, at_limit
 
     def _cut_at_fold(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
-        """A step up to the fold on its way, or to a branching before that; None if lost."""
+        """A step up to the fold within it, or to a branching before that; None if lost."""
         arc, here = self.arc, self.here
         cut = arc.located(here, length, lambda at: at.along_parameter)
         if cut is None:
@@ -360,9 +400,9 @@ class _Follower:
         return fold._replace(negative=beyond.negative), Critical.FOLD, False
 
     def _cut_at_branching(self, there: _PathPoint, length: float) -> tuple[_PathPoint, Critical, bool] | None:
-        """A step up to the first place where the number of unstable directions changes; None if lost.
+        """A step up to the first change of the number of unstable directions; None if lost.
 
-        It is looked for where the number changes by one alone, or by more at once.
+        The number may change there by one or by more at once.
         """
         arc, here = self.arc, self.here
         low = 0.0
@@ -380,7 +420,7 @@ class _Follower:
         return None if cut is None else (cut[0]._replace(negative=there.negative), Critical.BRANCHING, False)
 
     def _keep(self, critical: Critical, before: int) -> None:
-        """Keep the point that the path has come to; ``before`` it had so many unstable directions."""
+        """Keep the point reached; ``before`` is the number of unstable directions before it."""
         here = self.here
         found = self._equilibrium()
         if critical is Critical.FOLD:
@@ -415,8 +455,15 @@ def _hides_folds(here: _PathPoint, there: _PathPoint, length: float) -> bool:
     return start - bend**2 / (4.0 * twist) < 0.0
 
 
+def _turns_through_zero(start: float, slope: float, end: float, end_slope: float) -> bool:
+    """Whether the cubic over 0 to 1 with these values and slopes at both ends is zero somewhere between."""
+    change = end - start
+    roots = np.roots([slope + end_slope - 2.0 * change, 3.0 * change - 2.0 * slope - end_slope, slope, start])
+    return bool(np.any((roots.imag == 0.0) & (roots.real > 0.0) & (roots.real < 1.0)))
+
+
 def _point_between(parameter: float, other: float) -> float | None:
-    """The ramp's point that comes first on the way from one parameter to another; None without one."""
+    """The ramp's first point between one parameter and another; None without one."""
     if other > parameter:
         point = float(np.floor(parameter)) + 1.0
         return point if point <= other else None

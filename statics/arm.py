@@ -11,8 +11,8 @@ Positive senses, everywhere in the program::
         +-----------------------> x
 
 A cable on the +y side bends the arm towards +y. Disks and segments count from 1 at the base. Segment i
-ends in node i: the centre of disk i, or, with ``subsegments`` of them from disk to disk, every so-many-th
-node is a disk's centre and the others are points of the core.
+ends in node i: the centre of disk i or, with ``subsegments`` segments from disk to disk, every
+``subsegments``-th node is the centre of a disk, and the others are points of the core.
 """
 
 from collections import Counter
@@ -38,6 +38,8 @@ Subsegments = Annotated[int, Field(ge=1, le=MAX_SEGMENTS)]
 class Cable:
     """A cable through a hole of every disk up to its anchor; ``anchor=None`` is the last disk.
 
+    With a ``start`` it reaches that disk in a sheath of constant length that is fixed there, like a Bowden
+    cable: the disks before it feel nothing of the cable, and that disk is to it what the base is otherwise.
     ``hole_offset`` (m) is one number, or one for the base and each disk up to the anchor. With a
     ``cable_stiffness`` (N/m) the cable is driven by its length: its displacement, how much of it is drawn in
     at the base, is given, and its tension follows. ``friction`` is the coefficient at its holes, and
@@ -50,6 +52,7 @@ class Cable:
     cable_stiffness: Positive | None = None
     friction: NonNegative = 0.0
     slip_speed: Positive = 1e-5
+    start: DiskNumber | None = None
 
     @property
     def driven_by_length(self) -> bool:
@@ -64,7 +67,7 @@ class Cable:
     def holes(self, disks: int) -> np.ndarray:
         """Offsets of its holes in the base and in each disk, shape (disks + 1,), m; the last one goes on."""
         given = np.atleast_1d(np.asarray(self.hole_offset, dtype=float))
-        return np.pad(given, (0, max(0, disks + 1 - given.size)), mode="edge")
+        return given[np.minimum(np.arange(max(disks + 1, given.size)), given.size - 1)]
 
 
 class CableKind(NamedTuple):
@@ -87,7 +90,7 @@ MassList = Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1)]
 class PerDisk:
     """Numbers of an arm whose disks, or the cores before them, differ: one for each disk, from the base on.
 
-    What is given here beats the arm's one number of that name.
+    They override the arm's single number of that name.
     """
 
     disk_spacing: PositiveList | None = None
@@ -117,7 +120,7 @@ class Payload:
 class Base:
     """Mount of the arm: the core starts at (x, y), m, at an ``angle`` (rad) to the x axis.
 
-    One that ``moves`` is there at the start, and what it does then is an input of the motion.
+    If it ``moves``, this is its pose at the start, and its motion is an input.
     """
 
     x: float = 0.0
@@ -144,7 +147,7 @@ RONE2012_HOLE_OFFSET = 0.008
 
 @dataclass(frozen=True, config=STRICT)
 class Arm:
-    """A planar arm. A number may stay None where no effect of the scene needs it; ``each`` has what differs.
+    """A planar arm. A number may stay None if no effect of the scene needs it; ``each`` has what differs.
 
     ``subsegments`` segments of constant curvature make the core from disk to disk. ``core_density`` gives the
     core a mass of its own, spread along each segment; ``disk_mass`` is then a disk's alone. Without a
@@ -196,6 +199,11 @@ class Arm:
                 f"Allowed: disks 1 to {self.disks}."
             )
         last = cable.anchor or self.disks
+        if cable.start is not None and cable.start >= last:
+            raise InputError(
+                f"cable '{cable.name}': start {cable.start} is not before its anchor, disk {last}. "
+                f"Allowed: disks 1 to {last - 1}, or none for the base."
+            )
         if isinstance(cable.hole_offset, tuple) and len(cable.hole_offset) != last + 1:
             raise InputError(
                 f"cable '{cable.name}': {len(cable.hole_offset)} hole_offsets. Give one number, or "
@@ -212,7 +220,7 @@ class Arm:
 
     @classmethod
     def preset(cls, name: str, **changes: Any) -> "Arm":
-        """An arm from the literature; what is given in ``changes`` beats the preset.
+        """An arm from the literature; ``changes`` override the preset.
 
         Raises ``InputError`` for a name that is not a preset.
         """
@@ -221,9 +229,23 @@ class Arm:
         return cls(**{**PRESETS[name], **changes})
 
     @staticmethod
-    def round_core(radius: float) -> dict[str, float]:
-        """Area and second moment of a round core of that radius (m), as arguments of ``Arm``."""
-        return {"area": pi * radius**2, "second_moment": pi * radius**4 / 4}
+    def round_core(radius: float, inner_radius: float = 0.0) -> dict[str, float]:
+        """Area and second moment of a round core or a tube of these radii (m), as arguments of ``Arm``."""
+        return {
+            "area": pi * (radius**2 - inner_radius**2),
+            "second_moment": pi * (radius**4 - inner_radius**4) / 4,
+        }
+
+    @staticmethod
+    def round_disk(
+        mass: float, radius: float, thickness: float, inner_radius: float = 0.0
+    ) -> dict[str, float]:
+        """Mass (kg) and in-plane moment of inertia (kg m^2) of a disk or a ring, as arguments of ``Arm``.
+
+        Of a body of even density, these radii and that thickness (m): m (3 (R^2 + r^2) + h^2) / 12.
+        """
+        squares = 3 * (radius**2 + inner_radius**2) + thickness**2
+        return {"disk_mass": mass, "disk_inertia": mass * squares / 12}
 
     def knows(self, name: str) -> bool:
         """Whether the number of that name is given, once or for each disk."""
@@ -295,7 +317,8 @@ class Arm:
             holes = cable.holes(self.disks)
             columns[f"hole_offset_{number}"] = np.repeat(holes[1:], self.subsegments)
             columns[f"near_hole_offset_{number}"] = np.repeat(holes[:-1], self.subsegments)
-            passes = (is_disk == 0) & (disk <= (cable.anchor or self.disks))
+            felt = (disk > (cable.start or 0)) & (disk <= (cable.anchor or self.disks))
+            passes = (is_disk == 0) & felt
             columns[f"cable_passes_{number}"] = passes.astype(float)
             if cable.cable_stiffness is not None:
                 columns[f"cable_stiffness_{number}"] = np.full(self.segments, cable.cable_stiffness)
@@ -303,11 +326,12 @@ class Arm:
         return columns
 
     def cable_rest_length(self, cable: Cable) -> float:
-        """Length of a cable from its hole in the base to its anchor, along the unloaded arm, m. Eq. 23."""
+        """Length of a cable from its first hole to its anchor, along the unloaded arm, m. Eq. 23."""
         holes, spacing = cable.holes(self.disks), self.per_disk("disk_spacing")
         half = self.per_disk("reference_curvature") * spacing / 2
         along = np.sinc(half / pi) * (spacing - half * (holes[1:] + holes[:-1]))
-        return float(np.hypot(along, np.diff(holes) * np.cos(half))[: cable.anchor or self.disks].sum())
+        lengths = np.hypot(along, np.diff(holes) * np.cos(half))
+        return float(lengths[cable.start or 0 : cable.anchor or self.disks].sum())
 
     def _along(self, name: str) -> np.ndarray:
         """A number of the core before each disk, for each segment, shape (segments,)."""
@@ -328,7 +352,7 @@ class Arm:
         return max(Counter(payload.disk for payload in self.payloads).values(), default=0)
 
     def _payload_columns(self) -> dict[str, np.ndarray]:
-        """The first, second, ... payload of every node, shape (segments,); zero where there is none."""
+        """The first, second, ... payload of every node, shape (segments,); zero if there is none."""
         names = ("payload_mass", "payload_inertia", "payload_offset_x", "payload_offset_y")
         values = np.zeros((self.payloads_on_a_disk, len(names), self.disks))
         placed = Counter[int]()
@@ -376,5 +400,5 @@ class Arm:
         return (of_segments + np.append(of_segments[1:], 0.0)) / 2
 
     def _core_ends(self) -> np.ndarray:
-        """The part of the core's mass whose place of quadrature is a node, shape (segments,), kg."""
+        """The part of the core's mass at quadrature points that are nodes, shape (segments,), kg."""
         return AT_END * (self.core_masses + np.append(self.core_masses[1:], 0.0))

@@ -1,7 +1,7 @@
 """Equilibria of a scene, one at a time.
 
-What is returned as an equilibrium is one: residual at rounding level. Where there is none, or where it is
-not stable, the outcome says so. Under loads without a potential statics alone cannot tell whether it is.
+Every returned equilibrium has a residual at rounding level. If there is none, or if it is not stable, the
+outcome says so. Under loads without a potential, statics alone cannot decide its stability.
 """
 
 from dataclasses import dataclass, replace
@@ -25,11 +25,11 @@ MAX_ITERATIONS = 200
 MOST_STICKING = 100
 """Largest number of iterations of a search for cables that stick."""
 SHORTEST_STEP = 1 / 8
-"""Shortest step from the inputs before to those asked, over the whole, of such a search in steps."""
+"""Shortest step of such a search from the inputs before to the requested ones, over the whole distance."""
 MORE_STEPS = 5
-"""Most further steps of a search whose last step was small, and left a force unbalanced."""
+"""Largest number of further steps of a search whose last step was small but left a force unbalanced."""
 SLIP_PARTS = (1e-3, 1e-4, 1e-5, SLIP_PART)
-"""Slip lengths over the arm's length that a release goes through, from soft to what they are."""
+"""Slip lengths of a release over the arm's length, from soft to the actual one."""
 
 _OUTCOMES = {
     search.STABLE: Outcome.COMPLETED,
@@ -51,15 +51,15 @@ class Critical(IntEnum):
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """An arm at rest under ``tension``, or the search for it where ``found`` is False.
+    """An arm at rest under ``tension``, or the failed search for it if ``found`` is False.
 
     Arrays have shape (segments,), those of disks (disks,), ``tension`` (cables,), ``load_factor`` (driven
     loads,) or None; ``elongation`` is None in a scene without extension, the base's pose in an arm without
     ``base``; SI units. ``inputs`` are the scene's, without
-    motion; ``tension`` is that at the base and ``cable_displacement`` what is drawn in there, m.
-    ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None where
-    it is not known: under loads without a potential, until the modes of small motion have been asked.
-    ``left`` are the unstable equilibria that the search has come to and left, in this order. Along a ramp
+    motion; ``tension`` is that at the base and ``cable_displacement`` the length drawn in there, m.
+    ``residual`` is the largest unbalanced generalized force, N or N m. ``unstable_directions`` is None if
+    it is not known: under loads without a potential, until the modes of small motion are computed.
+    ``left`` are the unstable equilibria that the search has reached and left, in this order. Along a ramp
     ``critical`` says where its path of equilibria folds or branches, and ``lost_at`` is where the path from
     the equilibrium before left the stable ones, if it did. Then this one has ``jumped``, unless it lies on a
     path that branches off there.
@@ -116,7 +116,7 @@ class Equilibrium:
     def tip(self) -> tuple[float, float, float]:
         """x, y (m) and theta (rad) of the last disk.
 
-        Raises ``NotFoundError`` where no equilibrium was found: there the arrays hold where the search ended.
+        Raises ``NotFoundError`` if no equilibrium was found: then the arrays hold the end of the search.
         """
         if not self.found:
             raise NotFoundError(
@@ -141,14 +141,14 @@ class Equilibrium:
 
 
 def _outcome(ended: int, negative: int) -> Outcome:
-    """Outcome of a search, with the number of unstable directions where it is known."""
+    """Outcome of a search, with the number of unstable directions if it is known."""
     if ended == search.BALANCED and negative > 0:
         return Outcome.UNSTABLE_EQUILIBRIUM
     return _OUTCOMES[ended]
 
 
 class Slip(IntEnum):
-    """Which way cables that rub have all slipped: the two branches of a ramp with friction."""
+    """Direction in which all cables with friction have slipped: the two branches of a ramp."""
 
     DRAWN_IN = 1
     LET_OUT = -1
@@ -188,7 +188,7 @@ class StaticSolver:
         """The equilibrium reached from ``start``, shape (segments, dofs); from straight by default.
 
         ``inputs`` are the scene's, ``Scene.inputs``; those of a base's motion play no part. ``before`` is
-        where the arm comes from, or which way its cables last slipped: only friction asks for it.
+        the equilibrium before, or the direction in which the cables last slipped; only friction uses it.
         """
         arm = self.scene.arm
         q = np.zeros((arm.segments, len(self.scene.coordinates))) if start is None else start
@@ -199,9 +199,9 @@ class StaticSolver:
         return self._search_from(before, q, inputs)
 
     def _search_from(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The stable equilibrium that remembers the one before, by the first search that finds one.
+        """The stable equilibrium reached from the one before, by the first search that finds one.
 
-        Failing that, an unstable one, or the search for one where the arm is let go.
+        Failing that, an unstable one, or the failed search of a released arm.
         """
         stick, stick_exactly = (partial(self._stick, exactly=exactly) for exactly in (False, True))
         searches = [stick, self._release, stick_exactly, partial(self._stick_step_by_step, before)]
@@ -218,7 +218,7 @@ class StaticSolver:
         return replace(best, iterations=iterations)
 
     def _release(self, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The equilibrium that the arm comes to if let go, through softer slips of cables that rub."""
+        """The equilibrium that a released arm reaches, through larger slip lengths."""
         arm, left, q = self.scene.arm, list[Equilibrium](), start.copy()
         ended, iterations, passes = search.NOT_FOUND, 0, self.kernel.passes
         for slip_part in SLIP_PARTS if self.rubbing.size else (0.0,):
@@ -238,10 +238,10 @@ class StaticSolver:
             ended, more = self._find(q, inputs, MAX_ITERATIONS)
             iterations += more
             found = self.examine(q, inputs, ended, iterations)
-        return replace(found, left=tuple(left))
+        return replace(found, left=tuple(left)) if left else found
 
     def _stick(self, start: np.ndarray, inputs: np.ndarray, *, exactly: bool) -> Equilibrium:
-        """The equilibrium of cables that rub, from where they were: they stick, or slip from there.
+        """The equilibrium of cables with friction, which stick or slip from their earlier position.
 
         An exact search takes a few times as long for an iteration, and finds what friction couples strongly.
         """
@@ -255,9 +255,9 @@ class StaticSolver:
         return self.examine(q, inputs, ended, iterations)
 
     def _stick_step_by_step(self, before: Equilibrium, start: np.ndarray, inputs: np.ndarray) -> Equilibrium:
-        """The equilibrium as of ``_stick``, by way of others between the inputs before and these.
+        """The equilibrium as from ``_stick``, through intermediate inputs from the ones before.
 
-        All of them remember the one before, so that where the steps are does not matter.
+        All of them start from the same one before, so the choice of the steps does not matter.
         """
         part, step, iterations = 0.0, 0.5, 0
         while step >= SHORTEST_STEP:
@@ -279,20 +279,18 @@ class StaticSolver:
         return find(self.kernel.passes, q, *numbers, most)
 
     def examine(self, q: np.ndarray, inputs: np.ndarray, ended: int, iterations: int = 0) -> Equilibrium:
-        """All that is told of coordinates, shape (segments, dofs), at which a search has ``ended``."""
+        """Equilibrium at coordinates, shape (segments, dofs), at which a search has ``ended``."""
         arm, q = self.scene.arm, q.copy()
         pose = np.empty((arm.segments, 3))
         examine = newton.examine_stability if self.kernel.conservative else pseudo_transient.examine_balance
-        elastic, gravity, residual, negative = examine(
-            self.kernel.passes, q, inputs, self.segments, self.disks, pose
+        elastic, gravity, residual, negative, balanced = examine(
+            self.kernel.passes, q, inputs, self.segments, self.disks, arm.rest_length, pose
         )
         elongation = q[:, 1] if q.shape[1] == 2 else None
         disk_x, disk_y, disk_theta = pose[arm.disk_nodes].T
         driven = self.scene.driven_by(inputs, disk_x, disk_y, disk_theta)
-        numbers = (q, pose, driven["tension"], driven["cable_displacement"], [elastic, gravity, residual])
-        if not all(np.isfinite(values).all() for values in numbers) or (
-            ended in _FOUND and not self._is_balanced(q, inputs)
-        ):
+        numbers = (q, pose, driven["tension"], driven["cable_displacement"], (elastic, gravity, residual))
+        if (ended in _FOUND and not balanced) or not np.isfinite(np.concatenate(numbers, axis=None)).all():
             ended = search.NOT_FOUND
         return Equilibrium(
             outcome=_outcome(ended, negative),
@@ -311,32 +309,32 @@ class StaticSolver:
             residual=residual,
         )
 
-    def _is_balanced(self, q: np.ndarray, inputs: np.ndarray) -> bool:
-        """Whether the unbalanced forces are small in units of the forces that meet there."""
-        numbers = (inputs, self.segments, self.disks, self.scene.arm.rest_length)
-        return search.is_balanced(self.kernel.passes, q, *numbers)
-
     def _remember(self, before: "Equilibrium | Slip") -> None:
-        """Put where the cables slip from into the table."""
+        """Put the earlier lengths of the cables, from which they slip, into the table."""
         if not self.rubbing.size:
             return
         arm = self.scene.arm
         if isinstance(before, Slip):
             lengths = [np.full(arm.disks, before * FAR * arm.total_length) for _ in arm.cables]
         else:
-            ways = (cable_lengths(cable, before.poses) for cable in arm.cables)
-            lengths = [np.pad(np.cumsum(way[::-1])[::-1], (0, arm.disks - way.size)) for way in ways]
+            ways = [cable_lengths(cable, before.poses) for cable in arm.cables]
+            starts = [cable.start or 0 for cable in arm.cables]
+            ways = [
+                np.pad(way, (start, arm.disks - start - way.size))
+                for start, way in zip(starts, ways, strict=True)
+            ]
+            lengths = [np.cumsum(way[::-1])[::-1] for way in ways]
         for number, beyond in enumerate(lengths, start=1):
             self._set(f"length_before_{number}", np.repeat(beyond, arm.subsegments))
 
     def _set(self, name: str, values: np.ndarray) -> None:
-        """Fill the columns of a quantity, numbered or not, where the kernel has them."""
+        """Fill the columns of a quantity, numbered or not, if the kernel has them."""
         for column, known in enumerate(self.kernel.segment_columns):
             if known == name or known.rpartition("_")[0] == name:
                 self.segments[:, column] = values
 
     def rests(self, near: Equilibrium) -> list[Equilibrium]:
-        """Equilibria between which the arm may rest under the inputs of one that was found: that one alone.
+        """Equilibria between which the arm may rest under the inputs of a found one: usually that one alone.
 
         Cables that rub may leave it anywhere on the way between the branch of cables drawn in and that of
         cables let out, if there are both; the equilibrium lies on it.
@@ -347,7 +345,7 @@ class StaticSolver:
         return [point for point in (drawn_in, near, let_out) if point.found]
 
     def warm_up(self) -> None:
-        """Compile the kernel, or load it compiled, so that what follows is solving alone."""
+        """Compile the kernel, or load it, so that later calls only solve."""
         inputs = np.zeros(len(self.scene.inputs))
         rest = self.solve(inputs)
         if self.rubbing.size:
@@ -369,10 +367,10 @@ def equilibrium(
     """The arm at rest under these tensions, shape (cables,), N; a number will do for a single cable.
 
     For a cable that is driven by its length it is the displacement, m. Newton's method from ``start``, or
-    from the straight arm; effects that exist in motion only play no part. ``before`` is the equilibrium that
-    the arm comes from, or which way its cables have slipped: with friction there are two branches, and what
-    lies between. Look at ``outcome``: a stable equilibrium is ``completed``. Raises ``InputError`` for
-    tensions that do not fit. Rone 2012, Eq. 5.
+    from the straight arm; effects that exist in motion only are ignored. ``before`` is the equilibrium that
+    the arm comes from, or the direction in which its cables have slipped: with friction there are two
+    branches, and equilibria between them. The ``outcome`` of a stable equilibrium is ``completed``. Raises
+    ``InputError`` for tensions that do not fit. Rone 2012, Eq. 5.
     """
     values = scene.check_tension(tension)
     return StaticSolver(scene).solve(values, None if start is None else start.coordinates, before)

@@ -13,7 +13,7 @@ class InputError(ContinuumError):
 
 
 class NotFoundError(ContinuumError):
-    """A number asked of an equilibrium that was not found."""
+    """A number is requested from an equilibrium that was not found."""
 
 
 class KernelCacheError(ContinuumError):

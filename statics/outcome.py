@@ -18,7 +18,7 @@ class Outcome(StrEnum):
 
     @property
     def answered(self) -> bool:
-        """Whether the question was answered: "it has not settled" is an answer, too."""
+        """Whether the question was answered: "not settled" is an answer, too."""
         return self in (Outcome.COMPLETED, Outcome.SETTLED, Outcome.NOT_SETTLED)
 
     @property

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A named physical quantity; ``unit`` is SI, "1" where there is none.
+    """A named physical quantity; ``unit`` is SI, "1" if there is none.
 
-    ``letter`` stands for it in printed equations; it is the name itself where there is no customary one.
+    ``letter`` stands for it in printed equations; it is the name itself if there is no customary one.
     """
 
     name: str
@@ -30,28 +30,36 @@ disks                | n     | 1      | number of disks
 disk_spacing         | -     | m      | undeformed distance between neighbouring disks, along the core
 youngs_modulus       | E     | Pa     | Young's modulus E of the core
 core_radius          | -     | m      | radius of a round core; sets area and second_moment
+core_outer_radius    | -     | m      | outer radius of a tube that is the core; sets area and second_moment
+core_inner_radius    | -     | m      | inner radius of that tube
+core_material        | -     | 1      | material of the core; sets youngs_modulus and core_density
 area                 | A     | m^2    | cross-section area A of the core
 second_moment        | J     | m^4    | second moment of area J of the core about the bending axis
 disk_mass            | -     | kg     | mass of a disk, with the core around it unless core_density is given
 disk_inertia         | -     | kg m^2 | moment of inertia of a disk about an in-plane diameter
-core_density         | -     | kg/m^3 | density of the core, which then has a mass of its own all along
+disk_radius          | -     | m      | radius of a disk; sets its inertia, and its mass with disk_density
+disk_inner_radius    | -     | m      | radius of a disk's central hole
+disk_thickness       | -     | m      | thickness of a disk, along the core
+disk_density         | -     | kg/m^3 | density of a disk
+disk_material        | -     | 1      | material of the disks; sets disk_density
+core_density         | -     | kg/m^3 | density of the core, which then has its own distributed mass
 subsegments          | -     | 1      | number of segments from disk to disk
 reference_curvature  | k_0   | 1/m    | curvature of the unloaded core
 
 mass                 | -     | kg     | mass of a payload
 inertia              | -     | kg m^2 | moment of inertia of a payload about its own centre
-offset               | -     | m      | from a disk's centre to its payload's: along the core, along the disk
+offset               | -     | m      | payload's centre from the disk's: along the core, along the disk
 payload_mass         | m_p   | kg     | mass of a disk's payload
 payload_inertia      | I_p   | kg m^2 | moment of inertia of a disk's payload about its own centre
-payload_offset_x     | d_x   | m      | from a disk's centre to its payload's, along the core's tangent
-payload_offset_y     | d_y   | m      | from a disk's centre to its payload's, along the disk's y axis
+payload_offset_x     | d_x   | m      | payload's centre from the disk's, along the core's tangent
+payload_offset_y     | d_y   | m      | payload's centre from the disk's, along the disk's y axis
 
 x                    | -     | m      | x of the base
 y                    | -     | m      | y of the base
-angle                | -     | rad    | direction in which the core starts at the base, against the x axis
+angle                | -     | rad    | direction of the core at the base, relative to the x axis
 base_x               | x_b   | m      | x of the base
 base_y               | y_b   | m      | y of the base
-base_theta           | theta_b | rad  | angle of the base's normal against the x axis
+base_theta           | theta_b | rad  | angle of the base's normal relative to the x axis
 base_velocity_x      | v_bx  | m/s    | velocity of the base along x
 base_velocity_y      | v_by  | m/s    | velocity of the base along y
 base_angular_velocity | omega_b | rad/s | angular velocity of the base
@@ -66,23 +74,24 @@ node_inertia         | I     | kg m^2 | moment of inertia at a segment's end
 span_start           | -     | 1      | 1 on segments that start at a disk or the base
 bending_stiffness    | EJ    | N m^2  | E J of the core
 axial_stiffness      | EA    | N      | E A of the core
-hole_offset          | r     | m      | cable hole's place along the disk's y axis
-near_hole_offset     | r'    | m      | that of the same cable's hole before it
+hole_offset          | r     | m      | position of a cable's hole along the disk's y axis
+near_hole_offset     | r'    | m      | hole offset of the same cable at the disk before
 hole                 | -     | 1      | number of the disk that a hole is in, 0 for the base
 anchor               | -     | 1      | number of the disk where a cable ends
-cable_passes         | b     | 1      | 1 on segments whose end has a hole that a cable passes, 0 elsewhere
+start                | -     | 1      | number of the disk where a cable leaves its sheath, 0 for the base
+cable_passes         | b     | 1      | 1 on segments whose end has a hole of a bare cable, 0 elsewhere
 tension              | tau   | N      | tension of a cable
 cable_length         | l     | m      | length of a cable from hole to hole
 cable_displacement   | delta | m      | length of a cable drawn in at the base, against the unloaded arm
 cable_displacement_rate | delta' | m/s | speed at which a cable is drawn in at the base
-cable_stiffness      | k_c   | N/m    | tension of a cable that is driven by its length, over its stretch
-cable_rest_length    | Lambda_0 | m   | length of a cable from the base to its anchor in the unloaded arm
+cable_stiffness      | k_c   | N/m    | tension of a length-driven cable over its stretch
+cable_rest_length    | Lambda_0 | m   | length of a cable from first hole to anchor in the unloaded arm
 friction             | mu    | 1      | coefficient of friction of a cable at its holes
-slip_speed           | v_s   | m/s    | speed of slip at which friction is three quarters of its most
-slip_length          | l_s   | m      | slip from rest at which friction is three quarters of its most
+slip_speed           | v_s   | m/s    | slip speed at which friction is three quarters of its maximum
+slip_length          | l_s   | m      | slip from rest at which friction is three quarters of its maximum
 length_beyond        | Lambda | m     | length of a cable from a hole to its anchor
-length_before        | Lambda' | m    | that length in the equilibrium that the arm comes from
-tension_lost         | -     | N      | what friction has taken of a cable's tension on the way from the base
+length_before        | Lambda' | m    | length beyond in the equilibrium that the arm comes from
+tension_lost         | -     | N      | tension of a cable lost to friction between the base and here
 acceleration         | -     | m/s^2  | acceleration of gravity, a vector in the plane
 gravity_x            | g_x   | m/s^2  | acceleration of gravity along x
 gravity_y            | g_y   | m/s^2  | acceleration of gravity along y
@@ -94,14 +103,14 @@ load_force_y         | F_y   | N      | sum of the dead forces on a disk, along 
 load_moment          | M     | N m    | sum of the moments on a disk
 follower_force_x     | F_t   | N      | sum of the follower forces on a disk, along the core's tangent there
 follower_force_y     | F_n   | N      | sum of the follower forces on a disk, along the disk's y axis
-load_factor          | f     | 1      | what a load that changes in time is multiplied by
-factor               | f     | 1      | what a load that changes in time is multiplied by
-driven_force_x       | F_x   | N      | force that a load factor multiplies, along x; a follower's, the core
-driven_force_y       | F_y   | N      | force that a load factor multiplies, along y; a follower's, the disk's
-driven_moment        | M     | N m    | moment that a load factor multiplies
+load_factor          | f     | 1      | factor on a load that changes in time
+factor               | f     | 1      | factor on a load that changes in time
+driven_force_x       | F_x   | N      | force under a load factor, along x; of a follower, along the core
+driven_force_y       | F_y   | N      | force under a load factor, along y; of a follower, along the disk
+driven_moment        | M     | N m    | moment under a load factor
 load                 | -     | 1      | number of a load that changes in time
 retardation_time     | t_r   | s      | Kelvin-Voigt viscosity over Young's modulus, eta / E
-mass_damping_rate    | alpha_m | 1/s  | damping force over mass and speed, Rayleigh's alpha
+mass_damping_rate    | alpha_m | 1/s  | damping force over mass and speed (Rayleigh's alpha)
 drag_per_speed       | c     | N s/m  | linear drag on a disk over its speed
 rotary_drag_per_speed | c_r  | N m s  | moment of linear drag over angular speed
 drag_per_speed_squared | c_2 | N s^2/m^2 | quadratic drag on a disk over its speed squared
@@ -120,57 +129,57 @@ curvature            | k     | 1/m    | curvature k of a segment
 length               | L     | m      | length L of a segment
 disk_x               | -     | m      | x of a disk's centre
 disk_y               | -     | m      | y of a disk's centre
-disk_theta           | -     | rad    | angle of a disk's normal against the x axis
-stable               | -     | 1      | 1 where the equilibrium is stable
+disk_theta           | -     | rad    | angle of a disk's normal relative to the x axis
+stable               | -     | 1      | 1 if the equilibrium is stable
 unstable_directions  | -     | 1      | number of independent directions in which an equilibrium is unstable
-critical             | -     | 1      | 1 where a path of equilibria turns back, 2 where it branches, else 0
-jumped               | -     | 1      | 1 where no path of stable ones leads here from a ramp's last one
+critical             | -     | 1      | 1 at a fold of a path of equilibria, 2 at a branching, else 0
+jumped               | -     | 1      | 1 if no path of stable equilibria leads here from a ramp's last one
 residual             | -     | N      | largest unbalanced generalized force, N or N m
 kinetic_energy       | -     | J      | kinetic energy of the masses
-elastic_energy       | -     | J      | energy stored in what is elastic: the core, by bending and extension
+elastic_energy       | -     | J      | energy stored in elastic parts, such as the core and stretched cables
 gravity_energy       | -     | J      | potential energy of the masses, zero at the origin
-input_power          | -     | W      | power of cables, of loads on disks and of a base that moves
+input_power          | -     | W      | power of cables, of loads on disks and of a moving base
 dissipated_power     | -     | W      | power lost to damping and friction
 input_work           | -     | J      | time integral of the input power since the start
 mode                 | -     | 1      | number of a mode of small motion, the lowest first
-frequency            | f     | Hz     | frequency of a mode without its damping
+frequency            | f     | Hz     | undamped frequency of a mode
 damping_ratio        | zeta  | 1      | mean decay rate of a mode over 2 pi times its frequency
-decay_rate           | -     | 1/s    | rate at which a mode dies away, in the end
-fast_decay_rate      | -     | 1/s    | rate of the other exponential of a mode that does not swing
-shape_x              | -     | 1      | displacement of a disk in a mode, along x, per largest of any disk
-shape_y              | -     | 1      | displacement of a disk in a mode, along y, per largest of any disk
-shape_theta          | -     | rad/m  | turn of a disk in a mode, per largest displacement of any disk
-price                | -     | 1      | number of a way to compute a motion
+decay_rate           | -     | 1/s    | rate at which a mode dies away in the long run
+fast_decay_rate      | -     | 1/s    | rate of the other exponential of an overdamped mode
+shape_x              | -     | 1      | displacement of a disk in a mode, along x, over the largest
+shape_y              | -     | 1      | displacement of a disk in a mode, along y, over the largest
+shape_theta          | -     | rad/m  | rotation of a disk in a mode, over the largest displacement
+price                | -     | 1      | number of a setting in a table of costs
 method               | -     | 1      | name of an integrator
 rtol                 | -     | 1      | relative tolerance of an integrator
-step                 | h     | s      | step of an integrator whose steps are equal
-step_size            | -     | s      | step of the integrator that a sample lies in, zero where it has none
-tip_error            | -     | m      | largest distance of the tip from where it exactly is, over the samples
-angle_error          | -     | rad    | angle of the tip against what it exactly is
-solve_time           | -     | s      | time that the solving takes
+step                 | h     | s      | step of an integrator with equal steps
+step_size            | -     | s      | integration step that contains a sample, zero if it has none
+tip_error            | -     | m      | largest distance of the tip from its exact position, over the samples
+angle_error          | -     | rad    | error of the angle of the tip
+solve_time           | -     | s      | time of the solving
 steps                | -     | 1      | number of accepted integration steps
 segment_evaluations  | -     | 1      | work: one segment's part of an evaluation of the equations
 dissipated_energy    | -     | J      | time integral of the dissipated power since the start
-travel               | -     | m      | way of the tip from where the inputs' last change finds it to its rest
-rise_time            | -     | s      | time from first being at 10 % of the travel to first being at 90 %
-overshoot            | -     | 1      | largest way of the tip beyond its rest, over the travel
-settling_time_5      | -     | s      | time after which the tip stays within 5 % of its travel from its rest
-settling_time_2      | -     | s      | time after which the tip stays within 2 % of its travel from its rest
-settling_time_1      | -     | s      | time after which the tip stays within 1 % of its travel from its rest
+travel               | -     | m      | distance of the tip from rest at the last change of the inputs
+rise_time            | -     | s      | time from 10 % of the travel, first reached, to 90 %
+overshoot            | -     | 1      | largest distance of the tip beyond its rest position, over the travel
+settling_time_5      | -     | s      | time after which the tip stays within 5 % of its travel from rest
+settling_time_2      | -     | s      | time after which the tip stays within 2 % of its travel from rest
+settling_time_1      | -     | s      | time after which the tip stays within 1 % of its travel from rest
 ramp_rate            | -     | N/s    | largest rate of a ramped tension; m/s of a cable, 1/s of a load factor
-tip_lag              | -     | m      | largest distance of the tip from its equilibrium under the same drive
-delay                | -     | s      | time by which the tip is late on its static path
+tip_lag              | -     | m      | largest distance of the tip from its equilibrium under the same inputs
+delay                | -     | s      | delay of the tip on its static path
 quasistatic_error    | -     | m      | largest lag with which a ramp still counts as quasistatic
-quasistatic_rate     | -     | N/s    | ramp rate at which the lag comes to that error, if it is proportional
-measured_quasistatic_rate | - | N/s  | ramp rate at which the lag comes to that error, by running it
-hysteresis_area      | -     | J      | work of the cables once around a loop there and back, in motion
-tip_hysteresis       | -     | m      | largest distance of the tip there and back, same drive, in motion
-static_hysteresis_area | -   | J      | work of the cables once around a loop there and back, at rest
-static_tip_hysteresis | -    | m      | largest distance of the tip there and back, same drive, at rest
-ring_down_misfit     | -     | 1      | part of a ring-down that is not the damped sinusoid fitted to it
-mode_frequency       | -     | Hz     | frequency of the mode that is nearest to a ring-down's
+quasistatic_rate     | -     | N/s    | ramp rate at which the lag reaches that error, if proportional
+measured_quasistatic_rate | - | N/s  | ramp rate at which the lag reaches that error, measured by runs
+hysteresis_area      | -     | J      | work of the cables once around the hysteresis loop, in motion
+tip_hysteresis       | -     | m      | largest tip distance of two branches at the same input, in motion
+static_hysteresis_area | -   | J      | work of the cables once around the hysteresis loop, at rest
+static_tip_hysteresis | -    | m      | largest tip distance of two branches at the same input, at rest
+ring_down_misfit     | -     | 1      | part of a ring-down that its fitted damped sinusoid does not explain
+mode_frequency       | -     | Hz     | frequency of the mode nearest to a ring-down's frequency
 mode_damping_ratio   | -     | 1      | damping ratio of that mode
-static_gap           | -     | m      | distance of the tip at the end from where it rests
+static_gap           | -     | m      | distance of the tip at the end from its rest position
 """
 
 QUANTITIES: dict[str, Quantity] = {

@@ -1,7 +1,7 @@
-"""Ramps: a stable equilibrium for one set of inputs after another, none of which jumps without saying so.
+"""Ramps: stable equilibria for a sequence of inputs, with every jump reported.
 
-From one point of a ramp to the next the path of equilibria is continued. A cheap look at its slopes at both
-ends is enough where the two lie on one smooth path; elsewhere it is followed by arc length.
+From one point of a ramp to the next the path of equilibria is continued. If its slopes at both ends show that
+the two lie on one smooth path, this is enough; otherwise it is followed by arc length.
 """
 
 from collections.abc import Iterable
@@ -15,19 +15,19 @@ from statics.outcome import Outcome
 from statics.scene import Scene
 
 SMOOTH = 0.25
-"""Difference of a path's slopes at two points from the way between them, over it: no closer look below."""
+"""Largest difference of a path's slopes at two points from the line between them, over the line's slope."""
 SAME = 1e-6
 """Root of the summed squares of the changes of bend angle, rad, below which two equilibria are the same."""
 TOUCHING = 1e-3
-"""The same for ends of two paths that meet where one branches off the other: the matrix is singular there."""
+"""Such a change below which two paths meet at a branching, where the matrix is singular."""
 
 
 def tension_ramp(scene: Scene, tensions: Iterable[object]) -> list[Equilibrium]:
     """Equilibria under one set of tensions after another, each found from the one before it.
 
-    Each element of ``tensions`` is what ``equilibrium`` takes. Where none is found, the next search
-    starts from the last one that was. One that does not continue the one before has ``jumped``, and
-    ``lost_at`` says from where; it says likewise where the ramp goes on along a path that branches off.
+    Each element of ``tensions`` is one for ``equilibrium``. If none is found, the next search starts from the
+    last one found. One that does not continue the one before has ``jumped``, and
+    ``lost_at`` is the point that it jumped from, or at which the ramp continues on another branch.
     With friction the first is that of cables drawn in, and every other remembers the one before it. Raises
     ``InputError`` for tensions that do not fit.
     """
@@ -56,7 +56,7 @@ def ramp(
 def _come_to_step_by_step(
     solver: StaticSolver, inputs: np.ndarray, before: Equilibrium | Slip
 ) -> Equilibrium | None:
-    """The stable equilibrium that the way to inputs ends in, if it does: a search from afar may miss it.
+    """The stable equilibrium at the end of the path to the inputs, if any: a search from afar may miss it.
 
     Close to the limit the search's long steps run into it.
     """
@@ -69,9 +69,9 @@ def _come_to_step_by_step(
 def limit_on_the_way(
     solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None
 ) -> Equilibrium | None:
-    """The equilibrium at which the way to inputs that have none comes to a geometric limit, if it does.
+    """The equilibrium at which the path to inputs without one reaches a geometric limit, if it does.
 
-    The way leads from ``start``, or from slack cables and no loads that change.
+    The path starts at ``start``, or at slack cables and zero load factors.
     """
     path = _way(solver, inputs, start)
     return path.end if path is not None and path.outcome is Outcome.GEOMETRY_LIMIT else None
@@ -116,7 +116,7 @@ def _branches_off(solver: StaticSolver, lost: Path, point: Equilibrium) -> bool:
 
 
 def _on_one_smooth_path(arc: ArcLength, before: Equilibrium, point: Equilibrium) -> bool:
-    """Whether both slopes of the path are nearly those of the straight way between the two."""
+    """Whether both slopes of the path are nearly that of the straight line between the two."""
     way = point.coordinates - before.coordinates
     length = np.sqrt(arc.inner(way, way))
     if length < SAME and not np.array_equal(before.inputs, point.inputs):

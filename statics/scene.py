@@ -1,4 +1,4 @@
-"""A scene: an arm and the effects that it calls for."""
+"""A scene: an arm and its effects."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ from statics.errors import InputError, did_you_mean
 from statics.structure import Structure
 
 MAX_ALIKE = 20
-"""Most cables, or loads that change in time, or payloads on one disk: deriving them takes time for each."""
+"""Largest number of cables, of changing loads, or of payloads on one disk: each takes time to derive."""
 BASE_POSE = ("base_x", "base_y", "base_theta")
 BASE_MOTION = (
     *("base_velocity_x", "base_velocity_y", "base_angular_velocity"),
@@ -29,7 +29,7 @@ BASE_MOTION = (
 class Scene:
     """An arm and its effects, in an order that does not matter.
 
-    Raises ``InputError`` where an effect is given twice or needs a number that the arm does not have.
+    Raises ``InputError`` if an effect is given twice or needs a number that the arm does not have.
     """
 
     arm: Arm
@@ -98,7 +98,7 @@ class Scene:
         """Names of one segment's coordinates: ``bend_angle``, and ``elongation`` if it can extend."""
         return ("bend_angle", *(name for effect in self.effects for name in effect.coordinates))
 
-    @property
+    @cached_property
     def cables(self) -> int:
         """Number of cables in play: none unless the scene has the effect ``cables``."""
         return len(self.arm.cables) if self.has("cables") else 0
@@ -110,11 +110,11 @@ class Scene:
         cables = self.arm.cables[: self.cables]
         return tuple(CableKind(cable.driven_by_length, rubs and cable.friction > 0) for cable in cables)
 
-    @property
+    @cached_property
     def _loads(self) -> DiskLoads:
         return next((effect for effect in self.effects if isinstance(effect, DiskLoads)), DiskLoads())
 
-    @property
+    @cached_property
     def driven_loads(self) -> int:
         """Number of the loads that change in time."""
         return len(self._loads.driven)
@@ -131,7 +131,7 @@ class Scene:
 
     @property
     def without_potential(self) -> tuple[str, ...]:
-        """Loads that put in work without a potential, in words; friction, which has none, only takes it."""
+        """Loads that do work without a potential, in words; friction, which has none, only dissipates."""
         follows = self.has_followers or any(self.followers_among_driven)
         return ("follower loads",) if follows else ()
 
@@ -149,7 +149,7 @@ class Scene:
                 'not have. Take path = "stable".'
             )
 
-    @property
+    @cached_property
     def inputs(self) -> tuple[str, ...]:
         """Names of the numbers that drive the scene.
 
@@ -166,16 +166,19 @@ class Scene:
         return (*tensions, *factors, *pose, *rates, *(BASE_MOTION if self.arm.base_moves else ()))
 
     @property
+    def _numbers_without_rates(self) -> int:
+        """Number of those inputs that are no rates or accelerations: they stand before the others."""
+        return self.cables + self.driven_loads + (0 if self.arm.base is None else len(BASE_POSE))
+
+    @property
     def driven_by_length(self) -> list[int]:
         """Places, from 0 on, of the cables whose displacement is given."""
         return [number for number, kind in enumerate(self.cable_kinds) if kind.driven_by_length]
 
     def with_zero_rates(self, inputs: np.ndarray) -> np.ndarray:
         """Inputs with zero rates and accelerations of all that moves."""
-        moving = [name.startswith(("cable_displacement_rate", *BASE_MOTION)) for name in self.inputs]
         still = inputs.copy()
-        still[..., : len(moving)][..., moving] = 0.0
-        still[..., len(moving) :] = 0.0
+        still[..., self._numbers_without_rates :] = 0.0
         return still
 
     def driven_by(
@@ -184,17 +187,17 @@ class Scene:
         """Inputs, shape (..., inputs), by glossary name, and what follows from the poses, (..., disks).
 
         ``tension`` and ``cable_displacement`` have shape (..., cables); ``load_factor`` (..., driven loads)
-        and the base's pose (...,) are None where the scene has none.
+        and the base's pose (...,) are None if the scene has none.
         """
-        drives, factor, pose, _ = np.split(
-            inputs, np.cumsum([self.cables, self.driven_loads, len(BASE_POSE)]), axis=-1
-        )
-        base: Any = np.moveaxis(pose, -1, 0) if self.arm.base else np.zeros((3, *inputs.shape[:-1]))
+        cables, loads = self.cables, self.cables + self.driven_loads
+        known: dict[str, Any] = {"load_factor": inputs[..., cables:loads] if self.driven_loads else None}
+        base: Any = np.zeros((3, *inputs.shape[:-1]))
+        if self.arm.base:
+            base = np.moveaxis(inputs[..., loads : self._numbers_without_rates], -1, 0)
+            known |= zip(BASE_POSE, base, strict=True)
         disks = zip(base, (disk_x, disk_y, disk_theta), strict=True)
         x, y, theta = (np.concatenate([start[..., np.newaxis], values], axis=-1) for start, values in disks)
-        known = dict(zip(BASE_POSE, base if self.arm.base else [None] * len(BASE_POSE), strict=True))
-        known |= {"load_factor": factor if self.driven_loads else None}
-        return known | self._cables_driven_by(drives, (x, y, theta))
+        return known | self._cables_driven_by(inputs[..., :cables], (x, y, theta))
 
     @cached_property
     def _cable_rest_lengths(self) -> tuple[float, ...]:
@@ -233,7 +236,7 @@ class Scene:
         return self.cables > 0 and self.arm.holes_differ
 
     def has(self, name: str) -> bool:
-        """Whether the scene calls for the effect of that name."""
+        """Whether the scene has the effect of that name."""
         return any(effect.name == name for effect in self.effects)
 
     def table(self, site: str, columns: Iterable[str]) -> np.ndarray:

@@ -1,6 +1,6 @@
 """The structure of a scene: all that its equations are derived from, and so the key of its kernels.
 
-Numbers are no part of it: a changed stiffness never derives anything anew, a changed equation always does.
+Numbers are no part of it: a changed stiffness never causes a new derivation, a changed equation always does.
 """
 
 import hashlib
@@ -18,7 +18,7 @@ from statics.errors import InputError
 
 @dataclass(frozen=True)
 class Structure:
-    """Everything that changes the equations of a scene; the derivation is given this and nothing else.
+    """Everything that changes the equations of a scene; the only input of the derivation.
 
     ``effects`` are the classes of the scene's effects; ``coordinates`` and ``inputs`` the names of a
     segment's coordinates and of the numbers that drive the scene; ``payloads`` the largest number of them on
@@ -53,7 +53,7 @@ class Structure:
         return self.has_followers or any(self.followers_among_driven)
 
     def has(self, name: str) -> bool:
-        """Whether the scene calls for the effect of that name."""
+        """Whether the scene has the effect of that name."""
         return name in self.names
 
     @property

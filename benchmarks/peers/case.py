@@ -68,7 +68,7 @@ class Case:
         self.duration = duration
         self.samples = np.linspace(0.0, duration, study.samples)
         self.stretches = cut_into_intervals(self.scenario.profiles, self.duration)
-        self.tension = float(self.stretches[-1].inputs(self.samples[-1:])[0, 0])
+        self.tension = float(self.stretches.last.inputs(self.samples[-1:])[0, 0])
         self.dynamics = Dynamics(self.scenario.scene)
         self.rest = equilibrium(self.scenario.scene, self.scenario.initial_inputs).coordinates
 

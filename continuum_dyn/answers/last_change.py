@@ -1,6 +1,6 @@
 """The last change of a motion's inputs."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +40,7 @@ def last_change(scenario: Scenario, until: float) -> LastChange:
     return changes[-1]
 
 
-def _changes(before: np.ndarray, intervals: Sequence[Interval]) -> list[LastChange]:
+def _changes(before: np.ndarray, intervals: Iterable[Interval]) -> list[LastChange]:
     """Jumps, and runs of intervals with continuous change."""
     found: list[LastChange] = []
     continues = False

@@ -103,7 +103,7 @@ def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
 
 
 def _place_of_rest(log: Log) -> np.ndarray:
-    """The tip's place of rest as the run tells it, x and y, m: with friction, beside its last equilibrium."""
+    """Rest position of the tip from the log, x and y, m; with friction not the last equilibrium."""
     if "rest_x" in log.attributes:
         return np.array([log.attributes["rest_x"], log.attributes["rest_y"]])
     return np.array([log.equilibria[name][-1, -1] for name in ("disk_x", "disk_y")])
@@ -142,7 +142,7 @@ def _modes_at_the_end(log: Log, scenario: Scenario) -> tuple[Mode, ...]:
     check(scenario.scene)
     dynamics = Dynamics(scenario.scene)
     end = scenario.require_motion("only a motion settles").duration
-    inputs = cut_into_intervals(scenario.profiles, end)[-1].inputs(np.array([end]))[0]
+    inputs = cut_into_intervals(scenario.profiles, end).last.inputs(np.array([end]))[0]
     rest = [log.equilibria[name][-1] for name in ("bend_angle", "elongation") if name in log.equilibria]
     with np.errstate(all="ignore"):
         return modes(dynamics, dynamics.state(np.column_stack(rest)), still(inputs))

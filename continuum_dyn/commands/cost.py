@@ -1,4 +1,4 @@
-"""``continuum-dyn cost``: what accuracy costs in time."""
+"""``continuum-dyn cost``: computing time against accuracy."""
 
 import csv
 from dataclasses import asdict
@@ -22,11 +22,12 @@ def cost(
     overrides: Overrides = None,
     out: Folder = Path("logs"),
 ) -> None:
-    """Show what accuracy costs in time.
+    """Show the computing time that accuracy costs.
 
     Runs the motion by every method over a range of tolerances, on finer and finer meshes, and without each
-    of its effects; prints error, time and work, and the cheapest way to each error. Writes DIR/NAME_cost.csv,
-    NAME_cost_mesh.csv, NAME_cost.h5 and NAME_cost.png.
+    of its effects. Prints error, least time and work, and the cheapest method for each error: that of least
+    work, weighted with its method's time for an evaluation. Writes DIR/NAME_cost.csv, NAME_cost_mesh.csv,
+    NAME_cost.h5 and NAME_cost.png.
     """
     from continuum_dyn.experiments.cost import measure
     from continuum_dyn.experiments.cost_file import write_cost
@@ -108,7 +109,7 @@ def _mesh_table(meshes: "Sequence[MeshPrice]") -> Any:
 
 
 def _order(before: float | None, error: float | None) -> str:
-    """The power of the number of segments that the error fell with, from the mesh half as fine."""
+    """Order of convergence: the power of the number of segments by which the error fell."""
     return f"{log2(before / error):.1f}" if before and error else ""
 
 
@@ -124,7 +125,8 @@ def _effect_table(measured: "Cost") -> Any:
 
 
 def _frontier_table(measured: "Cost") -> Any:
-    frontier = plain_table("\nCheapest way to a tip error", "below", "method", "rtol", "time", "work")
+    title = "\nCheapest way to a tip error, by work at each method's time for an evaluation"
+    frontier = plain_table(title, "below", "method", "rtol", "time", "work")
     for target, p in measured.frontier().items():
         if p is None:
             frontier.add_row(length(target), "not reached")

@@ -1,5 +1,6 @@
-"""``continuum-dyn explain``: what a scenario simulates, as equations."""
+"""``continuum-dyn explain``: the equations that a scenario simulates."""
 
+from collections.abc import Callable
 from textwrap import fill
 from typing import Annotated, Any
 
@@ -7,9 +8,15 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Overrides, ScenarioFile
 from continuum_dyn.commands.terminal.output import say
+from continuum_dyn.commands.terminal.show import with_status
 from statics.errors import InputError
 from statics.quantities import QUANTITIES
 
+ARM_NUMBERS = (
+    *("disk_spacing", "youngs_modulus", "area", "second_moment"),
+    *("core_density", "disk_mass", "disk_inertia", "reference_curvature"),
+)
+"""Numbers of an arm to show, in this order."""
 _DISK_LETTERS = {
     "velocity_x": "v_x",
     "velocity_y": "v_y",
@@ -28,9 +35,9 @@ def explain(
 ) -> None:
     """Show what each effect adds, the modes at rest, and the equations.
 
-    With --measure a motion is run without each effect in turn, to say which of them can be left out at the
-    accuracy that is asked for, and what time they cost. The first time each of these is compiled, which
-    takes up to half a minute.
+    With --measure the motion is run without each effect in turn, to show which effects can be left out at
+    the requested accuracy, and the time that they cost. The first time this compiles a scene for each effect,
+    which takes some ten seconds in all.
     """
     from continuum_dyn.commands.terminal.effect_tables import (
         show_additions,
@@ -47,6 +54,7 @@ def explain(
         f"{scene.arm.segments} segments, {per_segment * scene.arm.segments} coordinates: "
         f"{' and '.join(scene.coordinates)} of each segment.\n"
     )
+    _print_numbers(scene)
     if scene.arm.base is not None:
         _print_base(scene.arm)
     say("Effects in play")
@@ -54,7 +62,7 @@ def explain(
     for effect in scene.effects:
         line = f"  {effect.name:<{width}} on each {effect.site:<8} {effect.source}"
         say(fill(line, 79, subsequent_indent=" " * (width + 20)))
-    found = _modes(scenario)
+    found = with_status(scenario.title, lambda progress: _modes(scenario, progress))
     show_additions(scenario, None if isinstance(found, InputError) else found)
     _print_method(scenario)
     if isinstance(found, InputError):
@@ -68,16 +76,32 @@ def explain(
         say("\nWhat this scenario could do without: measured if you add --measure.")
 
 
+def _print_numbers(scene: Any) -> None:
+    """Numbers of the arm and of its effects, in SI units, whatever the file describes them by."""
+    arm = scene.arm
+    known = [name for name in ARM_NUMBERS if arm.knows(name)]
+    numbers = {name: getattr(arm.each, name, None) or getattr(arm, name) for name in known}
+    for effect in scene.effects:
+        numbers |= {name: getattr(effect, name) for name in effect.quantities if hasattr(effect, name)}
+    say(f"Numbers, of {arm.disks} disks on {arm.total_length:g} m of core")
+    for name, value in numbers.items():
+        unit = QUANTITIES[name].unit
+        shown = ", ".join(f"{each:.6g}" for each in (value if isinstance(value, tuple) else (value,)))
+        say(fill(f"  {name} = {shown}" + (f" {unit}" if unit != "1" else ""), 79, subsequent_indent="    "))
+    say()
+
+
 def _print_base(arm: Any) -> None:
     x, y, angle = arm.base_pose
     where = f"at x = {x:g} m, y = {y:g} m, at an angle of {angle:g} rad"
     say(f"The base {'moves, and starts' if arm.base_moves else 'is'} {where}.\n")
 
 
-def _modes(scenario: Any) -> Any:
+def _modes(scenario: Any, progress: Callable[[str], None]) -> Any:
     """The modes at rest, or the reason why there are none."""
     from continuum_dyn.modes import modes_at_rest
 
+    progress("modes at rest")
     try:
         return modes_at_rest(scenario)
     except InputError as reason:
@@ -89,16 +113,27 @@ def _print_method(scenario: Any) -> None:
 
     if scenario.study.motion is None or not scenario.solver.chooses_method:
         return
-    choice = Motion(scenario).choose_method()
+    choice = with_status(scenario.title, lambda progress: _choose(Motion(scenario), progress))
     say("\n" + fill(f"Method {choice.method}: {choice.reason}.", 79))
 
 
-def _print_equations(scene: Any, latex: bool) -> None:
+def _choose(motion: Any, progress: Callable[[str], None]) -> Any:
+    progress("choice of the method")
+    return motion.choose_method()
+
+
+def _derive(structure: Any, progress: Callable[[str], None]) -> Any:
     from continuum_dyn.equations.virtual_power import derive_dynamics
+
+    progress("equations")
+    return derive_dynamics(structure)
+
+
+def _print_equations(scene: Any, latex: bool) -> None:
     from statics.derivation.virtual_work import collect
 
     structure = scene.structure
-    forces = derive_dynamics(structure)
+    forces = with_status("explain", lambda progress: _derive(structure, progress))
     write = _latex if latex else _text
     used: set[str] = set()
     say("\nOne segment: its far end seen from its near disk (Eq. 11)")
@@ -132,7 +167,7 @@ def _print_equations(scene: Any, latex: bool) -> None:
 
 
 def _print_cable_laws(cables: Any, used: set[str]) -> None:
-    """The laws of tensions that hang together over all the segments that a cable passes."""
+    """Equations of the tensions that couple all segments that a cable passes."""
     if not cables:
         return
     say("\nTensions along a cable; Lambda: its length from a hole to its anchor")
@@ -171,7 +206,7 @@ def _letter(name: str) -> str:
 
 
 def _use_letters(value: Any, used: set[str], sigma: str) -> Any:
-    """The expression in the customary letters; ``sigma`` is the pattern for sigma_n(h), h = phi / 2."""
+    """Expression with the usual symbols; ``sigma`` is the pattern for sigma_n(h), h = phi / 2."""
     import sympy as sp
 
     from statics.derivation.sigma import Sigma

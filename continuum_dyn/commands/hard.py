@@ -1,4 +1,4 @@
-"""``continuum-dyn hard``: run hard cases by every method that claims them, and hold them to their bounds."""
+"""``continuum-dyn hard``: run hard cases by every method listed in them, and check their bounds."""
 
 import csv
 from collections import Counter
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from continuum_dyn.experiments.hard_cases import Verdict
 
 PATIENCE = 1.0
-"""Seconds for a method that does not claim a case."""
+"""Longest time of a method that a case does not list, s."""
 COLUMNS = ("method", "outcome", "error", "steps", "work", "time", "used")
 CSV_COLUMNS = (
     *("case", "method", "claimed", "outcome", "tip_error", "steps", "segment_evaluations"),
@@ -30,20 +30,20 @@ SUFFIXES = (".md", ".csv")
 
 def hard(
     folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Folder of scenarios that expect something.")
+        Path, typer.Argument(metavar="DIR", help="Folder of scenarios with a table [expect].")
     ] = Path("scenarios/hard"),
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Where the table goes: FILE.md or FILE.csv.")
+        Path | None, typer.Option(metavar="FILE", help="Write the table to FILE.md or FILE.csv.")
     ] = None,
     every: Annotated[
-        bool, typer.Option("--every-method", help="Run the methods that do not claim a case, too.")
+        bool, typer.Option("--every-method", help="Also run the methods that a case does not list.")
     ] = False,
 ) -> None:
-    """Run hard cases and hold them to their bounds.
+    """Run hard cases and check their bounds.
 
-    Each scenario of the folder says in a table [expect] how it must end and by which methods; it is run by
-    every one of them. Prints a table, and what broke a bound. Exit status: 0 all bounds are kept, 1 one is
-    not, 2 bad input.
+    A table [expect] in each scenario of the folder states how it must end, and by which methods; each of
+    these methods runs it. Prints a table, and every bound that is exceeded. Exit status: 0 no bound is
+    exceeded, 1 at least one is, 2 bad input.
     """
     from continuum_dyn.experiments.hard_cases import judge, load_cases
     from continuum_dyn.integrators import METHODS
@@ -78,7 +78,7 @@ def _write(path: Path, verdicts: "Sequence[Verdict]") -> None:
 
 
 def _write_csv(path: Path, verdicts: "Iterable[Verdict]") -> None:
-    """SI units; empty where there is no such number."""
+    """Write the verdicts in SI units; a cell without a number stays empty."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(CSV_COLUMNS)
@@ -134,7 +134,7 @@ def _show(verdicts: "Iterable[Verdict]") -> None:
 
 
 def _markdown(verdicts: "Sequence[Verdict]") -> str:
-    """The totals of each method; then each case with its title and a table, the claiming methods first."""
+    """Totals of each method; then each case with its title and a table, the listed methods first."""
     lines = ["# Hard cases", "", INTRODUCTION, ""]
     if not all(verdict.claimed for verdict in verdicts):
         lines += [OTHERS, "", *_totals(verdicts), ""]
@@ -146,19 +146,19 @@ def _markdown(verdicts: "Sequence[Verdict]") -> str:
 
 
 INTRODUCTION = """\
-Written by `continuum-dyn hard`, which runs the scenarios of a folder and holds
-each to the bounds that it states or implies. Error: largest distance of the tip
-from a much tighter run by the last of the methods that claim the case. Work:
-segment evaluations. Time: solving alone, with kernels loaded. Used: the largest
-part of what a bound allows."""
+Written by `continuum-dyn hard`, which runs the scenarios of a folder and checks
+their stated or implied bounds. Error: largest distance of the tip from a much
+tighter run by the last method listed in the case. Work: segment evaluations.
+Time: solving alone, with kernels loaded. Used: the largest part of a bound that
+is used up."""
 
 OTHERS = f"""\
-Below the methods that claim a case, in brackets, are those that do not: each has
-{PATIENCE:g} s. In all, where each method kept every bound, and where it did not:"""
+Methods in brackets are not listed in the case; each has {PATIENCE:g} s. The table counts
+the cases in which each method kept every bound, and the other results:"""
 
 
 def _totals(verdicts: "Iterable[Verdict]") -> list[str]:
-    """For each method, in how many cases it kept the bounds, and how it failed in the others."""
+    """Number of cases in which each method kept the bounds, and of each kind of failure."""
     kinds: dict[str, Counter[str]] = {}
     for verdict in verdicts:
         kinds.setdefault(verdict.method, Counter())[_kind(verdict)] += 1

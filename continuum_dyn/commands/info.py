@@ -1,4 +1,4 @@
-"""``continuum-dyn info``: what a log holds."""
+"""``continuum-dyn info``: the contents of a log."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from continuum_dyn.commands.terminal.output import console, give_back
-from continuum_dyn.commands.terminal.show import duration, length, plain_table
+from continuum_dyn.commands.terminal.show import bending, duration, length, plain_table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 def info(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="A log written by run.", show_default=False)],
     scenario: Annotated[
-        bool, typer.Option("--scenario", help="Print the text of its scenario, and nothing else.")
+        bool, typer.Option("--scenario", help="Print only the text of its scenario.")
     ] = False,
 ) -> None:
-    """Show what is inside a log: outcome, method, arm, and each dataset with its range.
+    """Show the contents of a log: outcome, method, arm, and each dataset with its range.
 
-    With --scenario the log gives back the file that it answers: info LOG --scenario > NAME.toml
+    With --scenario it prints the scenario file of the run: info LOG --scenario > NAME.toml
     """
     from continuum_dyn.record import read_log
 
@@ -65,7 +65,7 @@ def _facts(log: "Log") -> Iterator[tuple[str, str]]:
         if name in given:
             yield name.replace("_", " "), length(given[name])
     if "bending_strain" in given:
-        yield "bending", f"{100 * given['bending_strain']:.2g} % strain of the core at most"
+        yield "bending", bending(given["bending_strain"])
     for warning in given.get("warnings", "").splitlines():
         yield "warning", warning
     yield "solving", f"{duration(given['solve_time'])}"

@@ -1,15 +1,19 @@
-"""``continuum-dyn keys``: what a scenario file may say."""
+"""``continuum-dyn keys``: the keys of scenario files."""
 
 from collections.abc import Sequence
+from shutil import get_terminal_size
+from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from continuum_dyn.commands.terminal.output import console
+from continuum_dyn.commands.terminal.output import say
 from statics.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from continuum_dyn.scenario_files.keys import KeyTable
+
+INDENT = "    "
 
 
 def keys(
@@ -22,19 +26,19 @@ def keys(
         ),
     ] = None,
 ) -> None:
-    """Print every key of scenario files: what it may be, what it is by default, what it means.
+    """Print every key of scenario files: example, meaning, unit, allowed values and default.
 
     Units are SI. `continuum-dyn init` writes a file with most of them to start from.
     """
     from continuum_dyn.scenario_files.keys import key_tables
 
-    found = key_tables()
+    found, width = key_tables(), get_terminal_size().columns
     for each in found if table is None else _named(table, found):
-        _print(each)
+        _print(each, width)
 
 
 def _named(name: str, tables: "Sequence[KeyTable]") -> "list[KeyTable]":
-    """The tables in whose headings a name stands. Raises ``InputError`` where it stands in none."""
+    """The tables in whose headings a name stands. Raises ``InputError`` if it stands in none."""
     words = {table.heading: _words(table.heading) for table in tables}
     found = [table for table in tables if name in words[table.heading]]
     if not found:
@@ -49,17 +53,14 @@ def _words(heading: str) -> set[str]:
     return set(heading.translate(str.maketrans('[]="', "    ")).split())
 
 
-def _print(table: "KeyTable") -> None:
-    from rich.table import Table
-
-    screen = console()
-    screen.print(table.heading)
-    screen.print(table.text.replace("`", ""))
-    if table.keys:
-        shown = Table(box=None, pad_edge=False, header_style="dim")
-        for column in ("key", "may be", "by default", "meaning"):
-            shown.add_column(column, overflow="fold", ratio={"may be": 2, "meaning": 4}.get(column))
-        for key in table.keys:
-            shown.add_row(*(cell.replace("`", "") for cell in key))
-        screen.print(shown)
-    screen.print()
+def _print(table: "KeyTable", width: int) -> None:
+    say(table.heading)
+    say("\n".join(fill(line, width) for line in table.text.replace("`", "").splitlines()))
+    if table.example:
+        say(f"\n{table.example}")
+    for key in table.keys:
+        default = key.default if key.default in ("", "required") else f"default: {key.default}"
+        say(f"\n{key.example}")
+        for line in (key.meaning, "; ".join(filter(None, (key.value, default)))):
+            say(fill(line.replace("`", ""), width, initial_indent=INDENT, subsequent_indent=INDENT))
+    say("\n")

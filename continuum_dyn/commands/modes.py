@@ -1,4 +1,4 @@
-"""``continuum-dyn modes``: how the arm at rest swings, and how fast that dies away."""
+"""``continuum-dyn modes``: frequencies, damping and shapes of small motions about rest."""
 
 import csv
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides, ScenarioFile
 from continuum_dyn.commands.terminal.output import console, say
-from continuum_dyn.commands.terminal.show import make_folder, mode_row, plain_table
+from continuum_dyn.commands.terminal.show import make_folder, mode_row, plain_table, with_status
 from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
@@ -35,9 +35,9 @@ def modes(
 ) -> None:
     """Show the modes of the arm at rest.
 
-    Small motions about the equilibrium that the scenario starts from: frequency, damping ratio, time to die
-    away, shape. The scene needs the effect inertia. Writes DIR/NAME_modes.csv, with the shapes of all modes,
-    and NAME_modes.png, with the first six.
+    These are small motions about the initial equilibrium: frequency, damping ratio, decay time, shape. The
+    scene needs the effect inertia. Writes DIR/NAME_modes.csv, with the shapes of all modes, and
+    NAME_modes.png, with the first six.
     """
     from continuum_dyn.modes import modes_at_rest
     from continuum_dyn.scenario_files.reading import load_scenario
@@ -45,7 +45,7 @@ def modes(
 
     scenario = load_scenario(file, overrides or ())
     make_folder(out)
-    found = modes_at_rest(scenario)
+    found = with_status(scenario.title, lambda _: modes_at_rest(scenario))
     stem = out / f"{file.stem}_modes"
     with defer_interruption():
         _write_csv(found, stem.with_suffix(".csv"))

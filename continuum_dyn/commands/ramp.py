@@ -1,4 +1,4 @@
-"""``continuum-dyn ramp``: whether a ramp is quasistatic, and the loop that it goes through."""
+"""``continuum-dyn ramp``: lag behind the static path, and the hysteresis loop."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.arguments import BesideLog
 from continuum_dyn.commands.terminal.assertions import (
     HELP,
     Verdict,
@@ -33,24 +33,24 @@ if TYPE_CHECKING:
 
 def ramp(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a ramp.", show_default=False)],
-    out: Folder = Path("logs"),
+    out: BesideLog = None,
     error: Annotated[
         float, typer.Option(metavar="LENGTH", help="Lag (m) up to which a ramp counts as quasistatic.")
     ] = 1e-4,
     measure: Annotated[
-        bool, typer.Option("--measure", help="Run the scenario at several rates about the one in question.")
+        bool, typer.Option("--measure", help="Measure the quasistatic rate, by runs at several rates.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     assertions: Annotated[
         list[str] | None, typer.Option("--assert", metavar="TEXT", help=HELP.format("tip_lag < 1e-5"))
     ] = None,
 ) -> None:
-    """Show how a ramp keeps to its static path.
+    """Show how closely a ramp follows its static path.
 
-    Of a motion with static_path = true: how far its tip lags behind the equilibria of the same tensions, and
-    up to which rate it would stay within an error. Of a motion or a ramp of equilibria that goes there and
-    back: the loop between the two ways. Writes DIR/NAME_ramp.png. Exit status: 1 if an assertion does not
-    hold.
+    For a motion with static_path = true: how far its tip lags behind the equilibria of the same tensions, and
+    up to which rate it would stay within an error. For an up-and-down ramp, in motion or at rest: the
+    hysteresis loop between its two branches. Writes DIR/NAME_ramp.png. Exit status: 1 if an assertion does
+    not hold.
     """
     from continuum_dyn.answers.ramp import FIGURES, ramp_answers
     from continuum_dyn.answers.ramp_rates import measure_at_other_rates
@@ -63,11 +63,12 @@ def ramp(
         raise InputError(f"--error takes a length above 0, in m; read: {error:g}.")
     read = read_log(log)
     found = ramp_answers(read, error)
-    make_folder(out)
+    folder = out or log.parent
+    make_folder(folder)
     if measure:
         scenario, before = logged_scenario(read), found
         found = with_status(read.title, lambda progress: measure_at_other_rates(before, scenario, progress))
-    picture = out / f"{log.stem}_ramp.png"
+    picture = folder / f"{log.stem}_ramp.png"
     save(ramp_plot.ramp(read.title, found), picture)
     verdicts = judge(asked, found.figures)
     if as_json:
@@ -134,7 +135,7 @@ def _figure_table(found: "RampAnswers") -> Any:
 
 
 def _lag_table(found: "RampAnswers") -> Any:
-    """The lag on each way of the drive, and at each rate that was run."""
+    """Lag on each branch of the drive, and at each rate that was run."""
     table = plain_table("\nLag against rate", "", f"rate ({found.drive.rate_unit})", "largest lag", "delay")
     for way in found.lags:
         late = "" if way.delay is None else duration(way.delay)

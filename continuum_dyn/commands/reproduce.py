@@ -1,4 +1,4 @@
-"""``continuum-dyn reproduce``: what a paper prints, computed again."""
+"""``continuum-dyn reproduce``: recompute the results of a paper."""
 
 import csv
 from pathlib import Path
@@ -8,7 +8,7 @@ import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder
 from continuum_dyn.commands.terminal.output import console, say
-from continuum_dyn.commands.terminal.show import make_folder, plain_table
+from continuum_dyn.commands.terminal.show import make_folder, plain_table, with_status
 from statics.support.interruption import defer_interruption
 
 if TYPE_CHECKING:
@@ -19,18 +19,18 @@ if TYPE_CHECKING:
 
 
 def reproduce(
-    paper: Annotated[str, typer.Argument(metavar="PAPER", help="Which paper: rone2012.", show_default=False)],
+    paper: Annotated[str, typer.Argument(metavar="PAPER", help="The paper: rone2012.", show_default=False)],
     out: Folder = Path("logs"),
 ) -> None:
-    """Compute a paper's numbers again.
+    """Recompute the results of a paper.
 
-    rone2012: its Table 2, Fig. 3 and Fig. 4, by the equations as printed, by the program's, and by the exact
-    rod between disks, which judges both. Writes DIR/PAPER_table_2.csv, PAPER_shapes.csv and PAPER.png.
+    rone2012: its Table 2, Fig. 3 and Fig. 4, by the equations as printed, by the program, and by an exact
+    rod between the disks as reference for both. Writes DIR/PAPER_table_2.csv, PAPER_shapes.csv and PAPER.png.
     """
     from continuum_dyn.experiments.reproduce import reproduce as compute
     from continuum_dyn.views.figures import plots
 
-    found = compute(paper)
+    found = with_status(paper, lambda progress: compute(paper, progress))
     make_folder(out)
     with defer_interruption():
         _write_table_2(found, out / f"{paper}_table_2.csv")
@@ -41,7 +41,7 @@ def reproduce(
 
 
 def _columns_of_table_2(found: "Rone2012") -> dict[str, "np.ndarray"]:
-    """Positions of each disk, shape (disks, 2), m, by where they come from."""
+    """Positions of each disk by their source, shape (disks, 2), m."""
     import numpy as np
 
     from continuum_dyn.experiments.reproduce import TABLE_2_FINITE_ELEMENTS, TABLE_2_VIRTUAL_WORK
@@ -63,7 +63,7 @@ def _write_table_2(found: "Rone2012", path: Path) -> None:
 
 
 def _write_shapes(found: "Rone2012", path: Path) -> None:
-    """Every disk under every tension; the rod between disks has no one curvature, nor length."""
+    """Write every disk under every tension; the rod has no single curvature or length between disks."""
     by_tension = {shapes.tension: shapes for shapes in (*found.ramp, *found.figure_4)}
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

@@ -13,17 +13,17 @@ def resume(
         Path,
         typer.Argument(
             metavar="LOG",
-            help="A log (.h5) that ended early, or what a killed run left of one (.h5.part).",
+            help="A log (.h5) that ended early, or the part (.h5.part) left by a killed run.",
             show_default=False,
         ),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as a JSON object.")] = False,
 ) -> None:
-    """Go on with a run that was interrupted, killed, or stopped by its budget.
+    """Resume a run that was interrupted, killed, or stopped by its budget.
 
-    The log alone is needed. Its motion goes on from the last sample, under a budget as at first, and the
-    log of the whole takes its place. A search for equilibria, or for an accuracy, begins anew. Exit status:
-    as of run.
+    Only the log is needed. The motion continues from its last sample, with a new budget of the same size,
+    and the log of the whole run replaces the old one. A search for equilibria, or for an accuracy, restarts.
+    Exit status: as for run.
     """
     from continuum_dyn.record import read_log
     from continuum_dyn.record.log_format import UNFINISHED

@@ -1,20 +1,23 @@
-"""``continuum-dyn run``: answer scenarios and log them."""
+"""``continuum-dyn run``: simulate scenarios and log them."""
 
 import json
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from continuum_dyn.commands.terminal.arguments import Folder, Overrides
+from continuum_dyn.commands.terminal.clock import answer_begun
 from continuum_dyn.commands.terminal.extras import MissingExtraError, naming_extras
+from continuum_dyn.commands.terminal.log_names import hold_log, named_log
 from continuum_dyn.commands.terminal.output import console, say
-from continuum_dyn.commands.terminal.show import length, make_folder
+from continuum_dyn.commands.terminal.ramp_table import print_ramp, unsigned_zero
+from continuum_dyn.commands.terminal.show import bending, length, make_folder
 from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import InputError
 from statics.support.interruption import defer_interruption
@@ -27,26 +30,24 @@ if TYPE_CHECKING:
     from continuum_dyn.scenario.scenario import Scenario
     from continuum_dyn.simulation import Run
     from continuum_dyn.simulation.resumption import Resumption
-    from statics.equilibria import Equilibrium
 
-MAX_ROWS = 20
-"""Largest number of rows of a ramp that are printed."""
-MARKS = ("", "fold", "branching")
-"""Words for ``Critical`` in the table of a ramp."""
-STABLE = {True: "yes", False: "no", None: "unknown"}
 BAR_INTERVAL = 0.1
 """Shortest time between two updates of the progress bar, s."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """A scenario to answer: the file it comes of, its log to be; what it goes on with or is held against."""
+    """A scenario to answer, the file that it comes from, and its log, which may get a number.
+
+    ``resumption`` is what it continues, ``earlier`` the log that its own is compared with.
+    """
 
     source: Path
     scenario: "Scenario"
     log: Path
     resumption: "Resumption | None" = None
     earlier: "Log | None" = None
+    numbered: bool = False
 
 
 def run(
@@ -58,28 +59,39 @@ def run(
     ],
     overrides: Overrides = None,
     out: Folder = Path("logs"),
+    name: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Write the log of one file to DIR/NAME.h5.", show_default=False),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per line and file.")] = False,
-    live: Annotated[bool, typer.Option("--live", help="Show each in rerun while it runs.")] = False,
+    live: Annotated[bool, typer.Option("--live", help="Show each run in rerun as it goes.")] = False,
 ) -> None:
     """Simulate scenarios and log them.
 
-    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. The scenario of a log is run again, into
-    DIR/NAME_again.h5, and both are compared. Exit status: 0 answered ("not settled" is an answer), 1 not
-    answered (no stable equilibrium, geometric limit, diverged, budget exceeded) or not the same as before,
-    2 bad input, 130 interrupted.
+    Writes DIR/NAME.h5 and DIR/NAME.rrd for each NAME.toml. With --set the log of another variant is kept, and
+    this one becomes NAME_2.h5. For a log, its scenario is run again, into DIR/NAME_again.h5, and both are
+    compared. Exit status: 0 answered ("not settled" is an answer), 1 not answered (no stable equilibrium,
+    geometric limit, diverged, budget exceeded) or different from the log, 2 bad input, 130 interrupted.
     """
     jobs = _load(files, overrides or (), out)
+    if name is not None:
+        jobs = [_renamed(jobs, named_log(out, name))]
     make_folder(out)
     statuses = []
     for job in jobs:
-        if live:
-            from continuum_dyn.views.playback.live import start
-
-            start(job.log)
-        statuses.append(answer(job, as_json))
+        statuses.append(answer(job, as_json, live))
         if statuses[-1] > 1:
             break
     raise typer.Exit(max(statuses))
+
+
+def _renamed(jobs: Sequence[Job], log: Path) -> Job:
+    """The only job, with that log. Raises ``InputError`` if there are several."""
+    if len(jobs) > 1:
+        raise InputError(f"--name names one log, and there are {len(jobs)} files. Run them one by one.")
+    if log.resolve() == jobs[0].source.resolve():
+        raise InputError(f"--name {log.stem}: the log would replace {jobs[0].source}. Choose another name.")
+    return replace(jobs[0], log=log, numbered=False)
 
 
 def _load(files: list[Path], overrides: Sequence[str], out: Path) -> list[Job]:
@@ -105,15 +117,15 @@ def _job(path: Path, overrides: Sequence[str], out: Path) -> Job:
         log = out / f"{path.stem}.h5"
         if path.resolve() == log.resolve():
             raise InputError(f"{path}: its log would replace it. Let scenarios end in .toml.")
-        return Job(path, load_scenario(path, overrides), log)
-    log = read_log(path)
-    return Job(path, logged_scenario(log, overrides), out / f"{path.stem}_again.h5", earlier=log)
+        return Job(path, load_scenario(path, overrides), log, numbered=bool(overrides))
+    log, again = read_log(path), out / f"{path.stem}_again.h5"
+    return Job(path, logged_scenario(log, overrides), again, earlier=log, numbered=bool(overrides))
 
 
-def answer(job: Job, as_json: bool) -> int:
-    """Answer a scenario, log it and tell of it; the exit status."""
+def answer(job: Job, as_json: bool, live: bool = False) -> int:
+    """Answer a scenario, log it and print its results; return the exit status."""
     with defer_interruption():  # so that what was computed is logged
-        report = _answer(job, quiet=as_json)
+        report = _answer(job, as_json, live)
         if as_json:
             say(json.dumps(report["record"]))
         else:
@@ -123,31 +135,36 @@ def answer(job: Job, as_json: bool) -> int:
     return max(report["run"].outcome.exit_status, int(differs))
 
 
-def _answer(job: Job, quiet: bool) -> dict[str, Any]:
-    from continuum_dyn.record import StreamedLog, read_log
+def _answer(job: Job, quiet: bool, live: bool) -> dict[str, Any]:
+    from continuum_dyn.record import read_log
     from continuum_dyn.record.comparison import compare
     from continuum_dyn.simulation import simulate
 
-    started = time.perf_counter()
-    with StreamedLog(job.log) as streamed:
+    started = answer_begun()
+    with hold_log(job.log, job.scenario.text, job.numbered) as (streamed, replaces):
+        if live:
+            from continuum_dyn.views.playback.live import start
+
+            start(streamed.path)
         with _progress(job.scenario.title, quiet) as progress:
             result = simulate(job.scenario, progress, sink=streamed, resumption=job.resumption)
         with stage("log written"):
             streamed.finish(result)
-    log = read_log(job.log)
+    log = read_log(streamed.path)
     with stage("recording written"):
         recording, without = _recording(log)
     wall_time = time.perf_counter() - started
     comparison = None if job.earlier is None else compare(job.earlier, log)
-    record = _record(job.source, result, job.log, recording, wall_time)
+    record = _record(job.source, result, log.path, recording, wall_time)
+    record["replaced"] = replaces
     if comparison is not None:
         record["compared"] = asdict(comparison) | {"same": comparison.same}
     extra = {"comparison": comparison, "source": job.source, "without_recording": without}
-    return {"run": result, "log": job.log, "record": record} | extra
+    return {"run": result, "log": log.path, "replaces": replaces, "record": record} | extra
 
 
 def _recording(log: "Log") -> tuple[Path | None, str]:
-    """The recording that is written beside a log; or none, and why."""
+    """The recording written beside a log, or None and the reason."""
     try:
         with naming_extras():
             from continuum_dyn.views.playback.recording import save
@@ -188,20 +205,20 @@ def _record(path: Path, result: "Run", log: Path, recording: Path | None, wall_t
         record["equilibria"] = [
             {
                 "tension": point.tension.tolist(),
-                "tip": point.tip,
+                "outcome": str(point.outcome),
+                "tip": point.tip if point.found else None,
                 "stable": point.stable,
                 "critical": point.critical.name.lower(),
                 "jumped": point.jumped,
             }
             for point in result.equilibria
-            if point.found
         ]
     return record
 
 
 @contextmanager
 def _progress(title: str, quiet: bool) -> Iterator[Any]:
-    """A progress bar on a terminal; while kernels are compiled it only pulses, and says why."""
+    """A progress bar on a terminal; during compilation it only pulses, with a message."""
     screen = console(stderr=True)
     if quiet or not (screen.is_terminal and shows_progress()):
         yield None
@@ -239,7 +256,8 @@ def _show(report: dict[str, Any]) -> None:
     if result.message:
         table.add_row("", result.message)
     if result.tip is not None:
-        table.add_row("tip", _pose(result.tip))
+        of_last = result.trajectory is not None or result.equilibria[-1].found
+        table.add_row("tip", _pose(result.tip) + ("" if of_last else ", the last one found"))
     if result.static_gap is not None:
         rest = "where friction may leave it" if len(result.rests) > 1 else "the final equilibrium"
         table.add_row("gap to static", f"{length(result.static_gap)} from {rest}")
@@ -248,22 +266,23 @@ def _show(report: dict[str, Any]) -> None:
     if result.tip_error is not None:
         table.add_row("accuracy", _accuracy(result, result.tip_error))
     if result.bending_strain is not None:
-        table.add_row("bending", f"{100 * result.bending_strain:.2g} % strain of the core at most")
+        table.add_row("bending", bending(result.bending_strain))
     for warning in result.warnings:
         table.add_row("warning", warning)
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     if report["comparison"] is not None:
         table.add_row("compared", _comparison_text(report["comparison"], report["source"]))
-    table.add_row("log", str(report["log"]))
+    replaced = ", in place of a log of another scenario" if report["replaces"] else ""
+    table.add_row("log", f"{report['log']}{replaced}")
     if report["without_recording"]:
         table.add_row("recording", f"none; {report['without_recording']}")
     else:
         table.add_row("play it", f"continuum-dyn play {report['log']}")
     screen = console()
     screen.print(table)
-    points = [point for point in result.equilibria if point.found]
+    points = result.equilibria
     if result.trajectory is None and len(points) > 1:
-        screen.print(_ramp_table(result, points))
+        print_ramp(result.scenario, points)
     screen.print()
 
 
@@ -315,32 +334,6 @@ def _accuracy(result: "Run", error: float) -> str:
     return f"tip within {length(error)}, {verdict}; {', '.join(took)}"
 
 
-def _ramp_table(result: "Run", points: list[Any]) -> Any:
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, header_style="dim")
-    for name in result.scenario.scene.arm.cable_names:
-        table.add_column(f"{name} (N)", justify="right")
-    for number in range(1, result.scenario.scene.driven_loads + 1):
-        table.add_column(f"load factor {number}", justify="right")
-    for name in ("tip x (mm)", "tip y (mm)", "theta (rad)", "stable", ""):
-        table.add_column(name, justify="right")
-    stride = -(-len(points) // MAX_ROWS)
-    for number, point in enumerate(points):
-        mark = "jumped" if point.jumped else MARKS[point.critical]
-        if number % stride and not mark:
-            continue
-        x, y, theta = point.tip
-        drives = (f"{value:g}" for value in _drives(point))
-        pose = f"{x * 1e3:.4f}", f"{y * 1e3:.4f}", f"{theta:.5f}"
-        table.add_row(*drives, *pose, STABLE[point.stable], mark)
-    return table
-
-
-def _drives(point: "Equilibrium") -> list[float]:
-    """Tensions, and load factors if any."""
-    return [*point.tension, *(() if point.load_factor is None else point.load_factor)]
-
-
 def _pose(tip: tuple[float, float, float]) -> str:
-    return f"x {tip[0] * 1e3:.4f} mm, y {tip[1] * 1e3:.4f} mm, theta {tip[2]:.5f} rad"
+    x, y, theta = map(unsigned_zero, (f"{1e3 * tip[0]:.4f}", f"{1e3 * tip[1]:.4f}", f"{tip[2]:.5f}"))
+    return f"x {x} mm, y {y} mm, theta {theta} rad"

@@ -1,4 +1,4 @@
-"""``continuum-dyn schema``: what editors complete and check scenario files by."""
+"""``continuum-dyn schema``: the JSON schema of scenario files, for editors."""
 
 import json
 
@@ -8,11 +8,11 @@ from continuum_dyn.commands.terminal.output import say
 def schema() -> None:
     """Print the JSON schema of scenario files.
 
-    Editors complete and check by it. Write it beside a scenario,
+    Editors use it to complete and check scenario files. Write it beside a scenario,
 
         continuum-dyn schema > scenario.schema.json
 
-    and make this the scenario's first line, for Even Better TOML in VS Code and for taplo elsewhere:
+    and make this the first line of the scenario, for Even Better TOML (VS Code) or taplo:
 
         #:schema ./scenario.schema.json
     """

@@ -1,4 +1,4 @@
-"""``continuum-dyn settle``: how a motion comes to rest."""
+"""``continuum-dyn settle``: settling times and ring-down of a motion."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from continuum_dyn.commands.terminal.arguments import Folder
+from continuum_dyn.commands.terminal.arguments import BesideLog
 from continuum_dyn.commands.terminal.assertions import (
     HELP,
     Verdict,
@@ -17,7 +17,7 @@ from continuum_dyn.commands.terminal.assertions import (
 )
 from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.pictures import save
-from continuum_dyn.commands.terminal.show import duration, length, make_folder, plain_table
+from continuum_dyn.commands.terminal.show import duration, length, make_folder, plain_table, with_status
 
 if TYPE_CHECKING:
     from continuum_dyn.answers.settling import Settling
@@ -28,7 +28,7 @@ CLEAR_MISFIT = 0.05
 
 def settle(
     log: Annotated[Path, typer.Argument(metavar="FILE.h5", help="A log of a motion.", show_default=False)],
-    out: Folder = Path("logs"),
+    out: BesideLog = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     assertions: Annotated[
         list[str] | None,
@@ -37,10 +37,10 @@ def settle(
 ) -> None:
     """Show how the motion of a log settles.
 
-    After the last change of what drives the arm, along the straight way of its tip to where it rests:
-    rise time, overshoot, settling times; frequency and damping ratio of the ring-down, beside those of the
-    linear mode at that equilibrium; and the gap that is left. Writes DIR/NAME_settle.png. Exit status:
-    1 if an assertion does not hold.
+    Evaluates the motion after the last change of the inputs, along the straight line from the tip to its rest
+    position: rise time, overshoot, settling times; frequency and damping ratio of the ring-down, compared
+    with those of the linear mode at that equilibrium; and the remaining gap. Writes DIR/NAME_settle.png.
+    Exit status: 1 if an assertion does not hold.
     """
     from continuum_dyn.answers.settling import FIGURES, settling
     from continuum_dyn.record import read_log
@@ -48,9 +48,10 @@ def settle(
 
     asked = parse(assertions or [], FIGURES)
     read = read_log(log)
-    found = settling(read)
-    make_folder(out)
-    picture = out / f"{log.stem}_settle.png"
+    found = with_status(read.title, lambda _: settling(read))
+    folder = out or log.parent
+    make_folder(folder)
+    picture = folder / f"{log.stem}_settle.png"
     save(settling_plot.settling(read.title, found), picture)
     verdicts = judge(asked, found.figures)
     if as_json:

@@ -1,4 +1,4 @@
-"""``continuum-dyn validate``: hold logs against their format."""
+"""``continuum-dyn validate``: check logs against their format."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,17 +8,17 @@ import typer
 from continuum_dyn.commands.terminal.output import say
 
 MAX_SHOWN = 20
-"""Largest number of departures of a file that are printed."""
+"""Largest number of faults printed for each file."""
 
 
 def validate(
     logs: Annotated[
-        list[Path], typer.Argument(metavar="LOG", help="Logs, as run writes them.", show_default=False)
+        list[Path], typer.Argument(metavar="LOG", help="Logs written by run.", show_default=False)
     ],
 ) -> None:
     """Check logs against the documented format: names, shapes, types, units, scales, finite numbers.
 
-    Exit status: 0 all as they should be, 1 something is not, 2 a file cannot be read at all.
+    Exit status: 0 all logs are valid, 1 at least one is not, 2 a file cannot be read at all.
     """
     from continuum_dyn.record import FORMAT_VERSION
     from continuum_dyn.record.reading import list_departures

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from continuum_dyn.scenario.expect import Expected
+from continuum_dyn.scenario.rates import pieces_from
 from continuum_dyn.scenario.scenario import Scenario, dissipated_by
 from continuum_dyn.simulation import Run
 from continuum_dyn.simulation.trajectory import Trajectory
@@ -88,9 +89,9 @@ def bounds_of(run: Run, expected: Expected, tip_error: float | None, whole: bool
 
 def is_left_alone(scenario: Scenario) -> bool:
     """Whether a damped scene's inputs are constant from the start of the motion on."""
-    pieces = [piece for profile in scenario.profiles for piece in profile.pieces()]
-    still = all(slope == amplitude == 0.0 for _, _, slope, amplitude, _, _ in pieces)
-    return still and len(pieces) == len(scenario.profiles) and bool(dissipated_by(scenario.scene))
+    pieces = [pieces_from(profile, 0.0, 2) for profile in scenario.profiles]
+    still = all(len(rows) == 1 and not rows[0, 2:4].any() for rows in pieces)
+    return still and bool(dissipated_by(scenario.scene))
 
 
 def energies(found: Trajectory) -> dict[str, float]:

@@ -1,10 +1,9 @@
 """Cost of accuracy: a motion by every method and tolerance, on every mesh, and without each effect.
 
-Times are medians of repeats of the whole integration, samples and energies included, beside the
-machine-independent work, in segment evaluations.
+Times are the least of some repeats of the whole integration, samples and energies included: what else the
+machine does can only add to them. Beside them stands the work, in segment evaluations, which no clock blurs.
 """
 
-import statistics
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -66,7 +65,7 @@ class MeshPrice:
     Under the motion's last tensions; ``tip_error`` in m, ``angle_error`` in rad. ``limit_error`` is that of
     the tip extrapolated from this mesh and the one of half as many segments. ``seconds`` is the time of one
     equilibrium, ``iterations`` times segments its work; ``motion_seconds`` that of the whole motion, None
-    where nodes without mass forbid it.
+    if nodes without mass forbid it.
     """
 
     subsegments: int
@@ -112,11 +111,27 @@ class Cost:
     over_budget: dict[str, float]
 
     def frontier(self) -> dict[float, Price | None]:
-        """The cheapest settings for each target error (m), or None if no run reached it."""
+        """The settings of least work for each target error (m), or None if no run reached it.
+
+        Work is weighed by its method's time for a segment evaluation.
+        """
+        weights = self.evaluation_seconds()
         return {
-            target: min((p for p in self.prices if p.error <= target), key=lambda p: p.seconds, default=None)
+            target: min(
+                (p for p in self.prices if p.error <= target),
+                key=lambda p: (weights[p.method] * p.segment_evaluations, p.rtol),
+                default=None,
+            )
             for target in TARGETS
         }
+
+    def evaluation_seconds(self) -> dict[Method, float]:
+        """Time of each method for a segment evaluation, overhead included: of all its runs together, s."""
+        totals: dict[Method, tuple[float, int]] = {}
+        for price in self.prices:
+            seconds, work = totals.get(price.method, (0.0, 0))
+            totals[price.method] = seconds + price.seconds, work + price.segment_evaluations
+        return {method: seconds / max(work, 1) for method, (seconds, work) in totals.items()}
 
 
 def prepare_motion(scenario: Scenario) -> Motion:
@@ -128,8 +143,8 @@ def prepare_motion(scenario: Scenario) -> Motion:
     return motion
 
 
-def median_seconds(motion: Motion, solver: Solver) -> float:
-    """Median time of the whole integration, s."""
+def least_seconds(motion: Motion, solver: Solver) -> float:
+    """Least time of the whole integration, s."""
     times = []
     for _ in range(REPEATS):
         started = time.perf_counter()
@@ -137,14 +152,14 @@ def median_seconds(motion: Motion, solver: Solver) -> float:
         times.append(time.perf_counter() - started)
         if times[-1] > PATIENCE:
             break
-    return statistics.median(times)
+    return min(times)
 
 
 def fastest_rate(motion: Motion) -> float:
     """Largest rate (1/s) of the motion linearized at its start, which explicit steps must resolve."""
     if motion.dynamics.scene.arm.massless_nodes:
         return np.inf
-    return rates(motion.dynamics, motion.start, motion.intervals[0])[1]
+    return rates(motion.dynamics, motion.start, motion.timeline.first)[1]
 
 
 def _complete(motion: Motion, solver: Solver) -> Trajectory:
@@ -198,7 +213,7 @@ def _prices(
             counters = found.counters
             work = counters["segment_evaluations"]
             error = tip_distance(found, reference)
-            prices.append(Price(method, rtol, error, median_seconds(motion, solver), counters["steps"], work))
+            prices.append(Price(method, rtol, error, least_seconds(motion, solver), counters["steps"], work))
     return prices, over_budget
 
 
@@ -237,17 +252,17 @@ def _motion_seconds(scenario: Scenario) -> float | None:
         motion.warm_up(solver)
     except InputError:
         return None
-    return median_seconds(motion, solver)
+    return least_seconds(motion, solver)
 
 
 def _timed(work: Callable[[], Equilibrium]) -> tuple[Equilibrium, float]:
-    """The answer, and the median time of some repeats after one that is not counted."""
+    """The answer, and the least time of some repeats after one that is not counted."""
     answer, times = work(), []
     for _ in range(BRIEF_REPEATS):
         started = time.perf_counter()
         work()
         times.append(time.perf_counter() - started)
-    return answer, statistics.median(times)
+    return answer, min(times)
 
 
 def _in_order(methods: Iterable[str]) -> list[Method]:
@@ -260,7 +275,7 @@ def effects(motion: Motion, progress: Callable[[str], None] = lambda _: None) ->
     Raises ``InputError`` if the motion with all effects does not reach its end.
     """
     solver, scenario = Solver("chain", rtol=1e-9, atol=1e-12), motion.scenario
-    whole, seconds = _complete(motion, solver), median_seconds(motion, solver)
+    whole, seconds = _complete(motion, solver), least_seconds(motion, solver)
     found = []
     for effect in scenario.scene.effects:
         if effect.name == "inertia":
@@ -276,6 +291,6 @@ def effects(motion: Motion, progress: Callable[[str], None] = lambda _: None) ->
         if trajectory is None:
             found.append(LeftOut(effect.name))
             continue
-        shift, spent = tip_distance(trajectory, whole), median_seconds(without, solver)
+        shift, spent = tip_distance(trajectory, whole), least_seconds(without, solver)
         found.append(LeftOut(effect.name, shift, spent / seconds, fastest_rate(without), seconds - spent))
     return found

@@ -1,4 +1,4 @@
-"""Hard cases: a scenario run by every method that claims it, and checked against bounds of its errors."""
+"""Hard cases: scenarios run by every method listed in them, and checked against bounds of their errors."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -37,7 +37,7 @@ class HardCase:
 
     @property
     def reference(self) -> Method:
-        """The method that errors are measured against."""
+        """Reference method for errors."""
         return list(self.expected.steps)[-1]
 
 
@@ -65,7 +65,7 @@ class Verdict:
 
 
 def load_cases(path: Path) -> list[HardCase]:
-    """Load the case of a scenario file, and the case with or without extension if the file asks for it.
+    """Load the case of a scenario file, and the case with or without extension if the file has one.
 
     Raises ``InputError`` if it is not one of a motion, or expects nothing.
     """
@@ -96,7 +96,7 @@ def judge(
     patience: float = 3600.0,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Verdict]:
-    """Judge each method that claims the case, then those ``others`` that do not.
+    """Judge each method that the case lists, then ``others``.
 
     Each of the others has ``patience`` (s) for its run; ``progress`` receives what is being computed.
     """
@@ -115,7 +115,7 @@ def judge(
 
 
 def _reference(case: HardCase) -> Trajectory | None:
-    """The motion by the case's last method at tighter tolerances; None if it ended otherwise than it must."""
+    """The motion by the case's last method at tighter tolerances; None if it did not end as required."""
     rtol = max(TIGHTEST, TIGHTER * case.scenario.solver.rtol)
     tight = replace(case.scenario.solver, method=case.reference, step=None).with_rtol(rtol)
     run = simulate(_cut_to_claim(case, tight))

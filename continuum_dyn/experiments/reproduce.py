@@ -63,7 +63,7 @@ class Shapes:
 
 @dataclass(frozen=True)
 class CoreSpread:
-    """The unactuated arm of the same mass with the core's part of it along the core, and not in the disks."""
+    """The unactuated arm with the core's mass distributed along the core instead of in the disks."""
 
     program: Equilibrium
     rod: RodShape
@@ -71,7 +71,7 @@ class CoreSpread:
 
 @dataclass(frozen=True)
 class Rone2012:
-    """Everything numeric in Rone and Ben-Tzvi 2012, computed again.
+    """All numerical results of Rone and Ben-Tzvi 2012, recomputed.
 
     ``unactuated`` is Fig. 3 and Table 2, ``figure_4`` has its tensions, ``ramp`` many from 0 to 2 N;
     ``unrounded`` is the unactuated arm with A and J of a core of 0.4 mm radius instead of Table 1's,
@@ -128,17 +128,25 @@ def with_core_spread(scene: Scene) -> Scene:
     return Scene(replace(heavy, disk_mass=float(of_disks)), scene.effects)
 
 
-def reproduce(paper: str) -> Rone2012:
-    """Compute every number of a paper again. Raises ``InputError`` if the paper is not known."""
+def reproduce(paper: str, progress: Callable[[str], None] = lambda _: None) -> Rone2012:
+    """Recompute every number of a paper; ``progress`` receives the current step.
+
+    Raises ``InputError`` if the paper is not known.
+    """
     if paper not in PAPERS:
         raise InputError(f"unknown paper '{paper}'.{did_you_mean(paper, PAPERS)}")
+    progress("kernels, loaded or compiled")
     arm = PaperArm()
     spread = with_core_spread(arm.scene)
     unrounded = Arm.preset("rone2012", cables=arm.scene.arm.cables, **Arm.round_core(CORE_RADIUS))
+    progress("Table 2")
+    unactuated = arm.shapes(0.0)
+    core_spread = CoreSpread(StaticSolver(spread).solve(np.zeros(1)), exact_rod(spread, 0.0))
+    progress("Fig. 3 and 4")
     return Rone2012(
-        unactuated=arm.shapes(0.0),
+        unactuated=unactuated,
         unrounded=StaticSolver(Scene(unrounded, arm.scene.effects)).solve(np.zeros(1)),
-        core_spread=CoreSpread(StaticSolver(spread).solve(np.zeros(1)), exact_rod(spread, 0.0)),
+        core_spread=core_spread,
         figure_4=tuple(arm.shapes(tension) for tension in FIGURE_4_TENSIONS),
         ramp=tuple(arm.shapes(tension) for tension in RAMP_TENSIONS),
         level_tension=arm.level_tensions(),

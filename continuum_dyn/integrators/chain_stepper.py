@@ -1,4 +1,4 @@
-"""The chain's own implicit integrator behind SciPy's interface: many compiled steps to one call."""
+"""Runge-Kutta methods on the chain with SciPy's interface: many compiled steps per call."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,7 +13,7 @@ from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Interval
 
 BATCH = 256
-"""Most internal steps to one step of SciPy's: a call through ``solve_ivp`` costs as much as one of them."""
+"""Largest number of internal steps per step of SciPy: a call through ``solve_ivp`` costs as much as one."""
 
 FIRST_PART = 0.01
 """Largest displacement of a disk in the first step, over the tolerance: it resolves a jump."""
@@ -22,7 +22,7 @@ LEAST_ROUNDINGS = 100.0
 """Shortest step after an interval of one or two roundings of the time, in such roundings."""
 
 CORNER_STEP = 0.1
-"""First step after a corner of an input, at most, in radians of the arm's lowest frequency."""
+"""Largest first step after a corner of an input, in radians of the arm's lowest frequency."""
 DRIVE_STEP = 0.5
 """Longest step, in radians of a wave of the inputs, whose work is interpolated within a step. Waves that are
 faster than the arm's lowest frequency are resolved as far as they move it."""
@@ -37,7 +37,7 @@ class ChainStepper(Stepper):
     other without a jump of accelerations; ``tolerance``, the largest displacement (m) of any disk by the
     error of one step; ``first_step`` (s), at most; ``tableau``. ``internal_times`` (s) are where internal
     steps begin and end. Where nodes carry no mass the start's accelerations are not known; a first step by
-    ``SDIRK4``, which does not ask for them, ends in some that fit.
+    ``SDIRK4``, which does not need them, ends in consistent ones.
     """
 
     steps_left = BATCH
@@ -111,7 +111,7 @@ class ChainStepper(Stepper):
         return True, None
 
     def _enter_next_span(self, row: int) -> None:
-        """Steps begin anew in size where a slope changes: what that sets swinging is seen between them, too.
+        """Restart the step size if a slope changes, to resolve the oscillations that this excites.
 
         A span of next to no length may have been a jump: no step is much longer than the one before.
         """

@@ -18,7 +18,7 @@ STIFF = 10.0
 FEW = 64
 """Largest number of coordinates whose rates are computed: the ratio grows with its square."""
 MANY_PERIODS = 1000.0
-"""Periods of the slowest mode above which an undamped motion needs its energy right rather than its phase."""
+"""Periods of the slowest mode above which the energy of an undamped motion matters more than its phase."""
 
 
 class Choice(NamedTuple):

@@ -97,7 +97,7 @@ class Monitor:
 
 
 _SolverClass: Any = object
-"""A class that a guard stands before: one of SciPy's, or a ``Stepper``."""
+"""A class under a guard: one of SciPy's, or a ``Stepper``."""
 
 
 class Guard(_SolverClass):

@@ -35,9 +35,9 @@ Records = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 PAST, WORK = 3, 6
 MOST_ITERATIONS = 20
-"""Newton iterations after which a step is given up."""
+"""Largest number of Newton iterations of a step."""
 STAGNANT = 1e5
-"""Times what is allowed: changes below that no longer shrink because of rounding."""
+"""Factor on the allowed change below which rounding may keep changes from shrinking."""
 
 
 @compiled
@@ -81,7 +81,7 @@ def solve_step(
 ) -> tuple[int, float]:
     """Newton's method for the mean rate ``v`` of a step, from its predictor; ``allowed`` in m.
 
-    It ends where what is left is below ``allowed``, or as small as rounding lets it become. Leaves r - dT/dq
+    It ends when the change is below ``allowed``, or as small as rounding permits. Leaves r - dT/dq
     in ``pull``; returns the iterations (negative if it did not converge) and the power in. A step of h = 0
     turns momenta into rates, v = M^-1 p.
     """
@@ -117,7 +117,7 @@ def solve_step(
 
 @compiled
 def predict(past: np.ndarray, v: np.ndarray) -> None:
-    """The next step's mean rate into ``v``: the parabola through those of the last three."""
+    """Extrapolate the next step's mean rate into ``v``, by the parabola through the last three."""
     for i in range(v.shape[0]):
         for k in range(v.shape[1]):
             v[i, k] = 3.0 * (past[0, i, k] - past[1, i, k]) + past[2, i, k]

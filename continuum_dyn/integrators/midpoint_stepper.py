@@ -1,4 +1,4 @@
-"""The midpoint rule behind SciPy's interface: many compiled steps to one call."""
+"""The midpoint rule with SciPy's interface: many compiled steps per call."""
 
 import math
 from typing import Any
@@ -11,7 +11,7 @@ from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.scenario.intervals import Interval
 
 BATCH = 256
-"""Most internal steps to one step of SciPy's."""
+"""Largest number of internal steps per step of SciPy."""
 
 ROUNDING = 1e-17
 """Largest displacement of a disk in a step's last iteration, over the arm's length."""

@@ -7,8 +7,8 @@ Because q' = u, the acceleration w is the only unknown of a stage: with g = gamm
 U and Q are known from the stages before. The matrix leaves out the velocity's own terms, so that it is the
 chain's; Newton's method then takes about two iterations. Errors are metres: the largest displacement of a
 disk under the error of the coordinates and, in an explicit method or where cables rub, under that of the
-rates for as long as it may last. At the edge of their stability explicit steps keep every stiff mode
-shivering within the tolerance: by a displacement too small to see, with rates and a dissipation beyond those
+rates for as long as it may last. At the edge of their stability explicit steps let every stiff mode
+oscillate within the tolerance: its displacement is negligible, but its rates and dissipation exceed those
 of the motion.
 
 Where cables rub, a stage's equations are solved until the rates are right, too, to a part of the slip speed,
@@ -20,7 +20,7 @@ Arguments travel in groups:
 
 - ``arm``: pieces of the inputs' profiles, segment table, disk table;
 - ``method``: a, c, error weights, predictor of the tableau; ``lasting``, the time (s) for which an error of
-  the rates is taken to last; ``slip_speed`` (m/s), infinite where no cable rubs;
+  the rates is taken to last; ``slip_speed`` (m/s), infinite without friction;
 - ``stages``: q, u, w, shape (stages, n, dofs);
 - ``workspace``: chain; six arrays like q, shape (6, n, dofs); scalars;
 - ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,
@@ -55,7 +55,7 @@ Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, float]
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 MOST_ITERATIONS = 8
-"""Newton iterations after which a stage is given up."""
+"""Largest number of Newton iterations of a stage."""
 STAGE_PART = 0.02
 """Largest error of a stage's equations, over the tolerance, and of its rates, over the slip speed."""
 ROOT_5 = math.sqrt(5.0)

@@ -7,7 +7,7 @@ import numpy as np
 
 
 class Stepper(ABC):
-    """A method on its way from ``t`` to ``t_bound``, step by step; see SciPy's ``OdeSolver``.
+    """A method that integrates from ``t`` to ``t_bound`` step by step; see SciPy's ``OdeSolver``.
 
     A step may be many; ``internal_steps`` and ``internal_rejections`` count those of the last call, which
     takes no more than ``steps_left``.
@@ -32,7 +32,7 @@ class Stepper(ABC):
         """The state at every time within the last step."""
 
     def step(self) -> str | None:
-        """Take one step; the reason if it failed. Raises ``RuntimeError`` where nothing is left to do."""
+        """Take one step; return the reason if it failed. Raises ``RuntimeError`` at the end."""
         if self.status != "running":
             raise RuntimeError(f"this solver has {self.status}.")
         before = self.t

@@ -37,7 +37,7 @@ class Tableau:
     def predictor(self) -> np.ndarray:
         """Weights that extrapolate a stage's acceleration from those before it, shape (stages, stages).
 
-        Lagrange's polynomial through the last three stages that the method itself looks at.
+        Lagrange's polynomial through the last three stages of the method itself.
         """
         weights = np.zeros_like(self.a)
         first = 0 if self.a[:, 0].any() else 1

@@ -1,7 +1,7 @@
 """The equations of motion on the chain, and their exact Jacobian.
 
 The integrator's state is y = (q, u, input_work, dissipated_energy): coordinates and rates of all
-segments, row by row, and the two time integrals of the power ledger; where the base moves the first of them
+segments, row by row, and the two time integrals of the power ledger; if the base moves the first of them
 is the work without ``transport_energy`` (``equations/transport.py``).
 """
 

@@ -1,4 +1,4 @@
-"""A scene's compiled equations of motion, under the names that an integrator asks for."""
+"""Compiled equations of motion of a scene, with the interface of an integrator."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Observation:
     """Quantities that follow from states: arrays over samples and disks; ``ledger`` by glossary name.
 
     ``coordinates`` and ``rates`` have shape (samples, segments, dofs). ``transport_energy`` (J) is what the
-    state's ``input_work`` leaves out where the base moves: see ``transport.py``.
+    state's ``input_work`` leaves out if the base moves: see ``transport.py``.
     """
 
     coordinates: np.ndarray

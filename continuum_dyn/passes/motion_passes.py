@@ -1,6 +1,6 @@
 """The passes of a scene in motion, as compiled code takes them.
 
-Fields are addresses of passes, zero where the scene has none, and sizes of arrays.
+Fields are addresses of passes, zero if the scene has none, and sizes of arrays.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Checks a log against the format: every place where it departs from it, in words.
+"""Check of a log against the format: a message for every difference.
 
 A file supplies numbers and texts alone: nothing of it is run, imported or unpickled, no other file is
 opened, and no more memory is taken than the file's size warrants.
@@ -36,7 +36,7 @@ _SCALARS = {str: "a text", float: "a finite number", int: "a whole number", bool
 
 
 def departures(file: Opened) -> Iterator[str]:
-    """Departures that prevent reading: wrong names, types, shapes and links of required parts.
+    """Differences that prevent reading: wrong names, types, shapes and links of required parts.
 
     Nothing else is checked if the format or its version is another one.
     """
@@ -213,7 +213,7 @@ def _wrong_names(file: Opened) -> Iterator[str]:
 
 
 def oddities(file: Opened) -> Iterator[str]:
-    """Departures that do not prevent reading: units, meanings and scales unlike the format's."""
+    """Differences that do not prevent reading: units, meanings and scales unlike the format's."""
     for name, known in GROUPS.items():
         group = file.group_of(name)[0]
         if group is None:

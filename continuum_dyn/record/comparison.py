@@ -1,4 +1,4 @@
-"""Compares a run with an earlier one of the same scenario."""
+"""Comparison of a run with an earlier one of the same scenario."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -40,7 +40,7 @@ def has_damaged_heaps(path: Path, file: h5py.File) -> bool:
 
 
 def _damaged_heaps(content: mmap.mmap) -> list[int] | None:
-    """Offsets of marks that begin no sound heap; None if heaps overlap, which HDF5 writes in no file."""
+    """Offsets of marks without a valid heap; None if heaps overlap, which HDF5 never writes."""
     damaged, left = [], len(content) // HEADER
     for start in _marks(content):
         sound, objects = _walk(content, start, left)

@@ -12,7 +12,7 @@ from statics.outcome import Outcome
 
 @dataclass(frozen=True)
 class Log:
-    """A log read back: arrays by glossary name; ``trajectory`` is empty where nothing moved.
+    """A log read back: arrays by glossary name; ``trajectory`` is empty without a motion.
 
     ``scenario`` is the text of the scenario's file, ``tables`` those of the CSV files that it names.
     ``attributes`` are the file's, ``counters`` what the solver counted. A log that is not ``complete`` is
@@ -37,3 +37,10 @@ class Log:
     def arm_length(self) -> float:
         """Undeformed length of the arm, m; its ``disk_spacing`` is one number, or one for each disk."""
         return float(np.mean(self.arm["disk_spacing"])) * self.arm["disks"]
+
+    @property
+    def bare_disks(self) -> list[slice]:
+        """Disks of each cable whose holes it passes without a sheath; 0 is the base."""
+        anchors = self.arm["anchor"]
+        starts = self.arm.get("start", np.zeros_like(anchors))  # none in logs of earlier versions
+        return [slice(int(start), int(last) + 1) for start, last in zip(starts, anchors, strict=True)]

@@ -84,6 +84,7 @@ GROUPS: dict[str, dict[str, Column]] = {
         **_columns("hole_offset", "cable", "hole"),
         **_columns("friction cable_stiffness", "cable"),
         "anchor": Column(("cable",), Kind.INTEGER),
+        "start": Column(("cable",), Kind.INTEGER, required=False),
         **_columns(" ".join(field.name for field in fields(PerDisk)), "disk", required=False),
     },
 }

@@ -1,4 +1,4 @@
-"""Groups of a log, whose members and attributes are each looked at once: that takes most of reading it."""
+"""Groups of a log, with each member and attribute examined once, since this takes most of the reading."""
 
 from functools import cached_property
 from typing import Any

@@ -1,5 +1,6 @@
-"""Reads logs, and refuses those that depart from the format."""
+"""Reading of logs, and refusal of those that differ from the format."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields
@@ -9,7 +10,6 @@ import h5py
 import numpy as np
 
 from continuum_dyn.record.checking import LARGEST, departures, oddities
-from continuum_dyn.record.datasets import reason
 from continuum_dyn.record.heaps import has_damaged_heaps
 from continuum_dyn.record.log import Log
 from continuum_dyn.record.log_format import ATTRIBUTES, COUNTERS, GROUPS, OPTIONAL_ATTRIBUTES, Kind
@@ -21,8 +21,10 @@ from statics.outcome import Outcome
 
 ARM_NUMBERS = [each.name for each in fields(Arm)]
 """Attributes of the arm that may be numbers; a file may have any others."""
+SCENARIO_START = 5000
+"""Number of bytes in which a scenario names its arm."""
 MAX_SHOWN = 12
-"""Largest number of departures from the format that an error lists."""
+"""Largest number of differences from the format that an error lists."""
 
 
 def is_hdf5(path: Path) -> bool:
@@ -54,7 +56,7 @@ def read_log(path: Path) -> Log:
 
 
 def list_departures(path: Path) -> list[str]:
-    """List all departures of a file from the format, in words. Raises ``LogError`` like ``open_log``."""
+    """List all differences of a file from the format, in words. Raises ``LogError`` like ``open_log``."""
     with open_log(path) as file:
         opened = Opened(file)
         found = list(departures(opened))
@@ -68,6 +70,7 @@ def list_departures(path: Path) -> list[str]:
 def open_log(path: Path) -> Iterator[h5py.File]:
     """Open an HDF5 file to read, also while it is written. Raises ``LogError`` if HDF5 cannot read it."""
     try:
+        _refuse_other_files(path)
         if path.stat().st_size > LARGEST:
             raise LogError(f"{path}: larger than any log, {LARGEST / 1e9:g} GB; it is not read.")
         with open_unclosed(path) if is_unclosed(path) else h5py.File(path, "r", locking=False) as file:
@@ -81,12 +84,28 @@ def open_log(path: Path) -> Iterator[h5py.File]:
     except MemoryError as error:
         raise LogError(f"{path}: larger than memory.") from error
     except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError) as error:
-        told = reason(error) if isinstance(error, OSError) else str(error).splitlines()[0][:200]
-        raise LogError(f"{path}: not a log of continuum-dyn that can be read: {told}.") from error
+        number = error.errno if isinstance(error, OSError) else None
+        told = f"cannot be read: {os.strerror(number)}" if number else "damaged"
+        raise LogError(f"{path}: {told}. If it is a log, run its scenario again.") from error
+
+
+def _refuse_other_files(path: Path) -> None:
+    """Raise ``LogError`` for a file that does not begin as a log does, with what it seems to be."""
+    if path.is_dir():
+        raise LogError(f"{path}: a folder. Give a log in it, such as {path / 'NAME.h5'}.")
+    with path.open("rb") as file:
+        start = file.read(SCENARIO_START)
+    if start.startswith(SIGNATURE):
+        return
+    if not start:
+        raise LogError(f"{path}: an empty file, and no log.")
+    if path.suffix == ".toml" or b"[arm]" in start:
+        raise LogError(f"{path}: a scenario, and no log. Run it first: continuum-dyn run {path}")
+    raise LogError(f"{path}: not a log of continuum-dyn. Logs are written by continuum-dyn run, as NAME.h5.")
 
 
 def _read(file: Opened, path: Path) -> Log:
-    """All that is in a file without departures."""
+    """Contents of a file that agrees with the format."""
     names = (*ATTRIBUTES, *OPTIONAL_ATTRIBUTES, "format_version")
     attributes = {name: value for name in names if (value := file.attribute(name)) is not None}
     arm, tables, counted = (file.group_of(name)[0] for name in ("arm", "tables", "trajectory"))

@@ -1,4 +1,4 @@
-"""Reads from a log the state from which an interrupted motion resumes."""
+"""State from which an interrupted motion resumes, read from its log."""
 
 import numpy as np
 from pydantic import ValidationError

@@ -1,4 +1,4 @@
-"""One writer at a time: a run keeps others from writing the same log until it has ended, however it ends."""
+"""One writer at a time: a run keeps others from writing the same log until it ends, in any way."""
 
 import errno
 import os
@@ -13,6 +13,11 @@ try:
     import fcntl
 except ImportError:  # on Windows
     fcntl = None
+
+
+class LogBusyError(LogError):
+    """A log is being written by another process."""
+
 
 BUSY = (errno.EWOULDBLOCK, errno.EACCES)
 
@@ -55,8 +60,9 @@ def _lock(lock: Path, path: Path) -> int | None:
             os.close(opened)
             if error.errno not in BUSY:
                 return None
-            raise LogError(
-                f"{path} is being written by another run. Wait for it, or name another folder with --out."
+            raise LogBusyError(
+                f"{path} is being written by another run. Wait for it, or write another log with --name or "
+                "--out."
             ) from error
         os.close(opened)  # its holder has just removed it
     return None

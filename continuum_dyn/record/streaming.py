@@ -1,8 +1,8 @@
 """A motion's log, written while the motion is computed: FILE.h5.part, until the run has ended.
 
 HDF5's mode for a single writer and many readers keeps what was flushed readable whenever the writer is
-killed, if no object is made once it has begun. So the file is made whole, with no samples, before it takes
-its name; blocks of samples are appended; and a copy of it is finished and takes the log's place.
+killed, if no object is created after its start. So the file is created with all its objects and no samples
+before it gets its name; blocks of samples are appended; and a copy of it is completed and replaces the log.
 """
 
 import os

@@ -1,8 +1,8 @@
-"""Opens HDF5 files that were never closed, as a run that was killed leaves them.
+"""Opening of HDF5 files that were never closed, as left by a killed run.
 
 Their first bytes, the superblock, say that a writer is at work. HDF5 then opens them for readers beside a
 writer, who wait for it without end if the file is damaged. Here the whole file is read into memory and
-its superblock put right there, as the tool h5clear does on disk (HDF5 File Format Specification, version
+its superblock corrected there, as the tool h5clear does on disk (HDF5 File Format Specification, version
 3.0, sec. II.A). Nothing that was flushed by a writer for such readers is lost by that.
 """
 

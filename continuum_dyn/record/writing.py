@@ -1,4 +1,4 @@
-"""Writes a run as a log in one go: the log is complete or missing."""
+"""Writing of a run as a log in one step: the log is complete or missing."""
 
 import platform
 from collections.abc import Mapping, Sequence
@@ -100,6 +100,7 @@ def _write_arm(group: h5py.Group, scenario: Scenario) -> None:
     columns = {
         "hole_offset": np.array([cable.holes(arm.disks) for cable in cables]).reshape(-1, arm.disks + 1),
         "anchor": np.array([cable.anchor or arm.disks for cable in cables], dtype=int),
+        "start": np.array([cable.start or 0 for cable in cables], dtype=int),
         "friction": np.array([cable.friction for cable in cables], dtype=float),
         "cable_stiffness": np.array([cable.cable_stiffness or 0.0 for cable in cables], dtype=float),
         **{name: np.array(values, dtype=float) for name, values in each.items()},

@@ -21,30 +21,29 @@ class Expected:
     outcome: Annotated[Outcome, Field(strict=False, description="how the motion ends")]
     steps: Annotated[
         dict[Method, Annotated[int, Field(ge=1)]],
-        Field(min_length=1, description="methods that claim the case, and the most steps that each may take"),
+        Field(min_length=1, description="methods that run the case, each with its largest number of steps"),
     ]
     until: Annotated[
         dict[Method, Positive],
-        Field(description="how far a method goes that does not go to the end, s; it need not settle"),
+        Field(description="time at which a method stops early, s; it need not settle"),
     ] = field(default_factory=dict)
     tip_error: Annotated[
         dict[Method, Positive],
-        Field(description="error of the tip of a method where it does not go by its tolerance, m"),
+        Field(description="largest tip error of a method, if not derived from its tolerance, m"),
     ] = field(default_factory=dict)
     horizon: Annotated[
-        Positive | None, Field(description="time up to which errors are looked at, s; by default the end")
+        Positive | None, Field(description="time up to which errors are checked, s; by default the end")
     ] = None
     amplification: Annotated[
-        float, Field(ge=1, description="how many times larger the motion itself makes an error")
+        float, Field(ge=1, description="factor by which the motion itself amplifies errors")
     ] = 1.0
     still_swings: Annotated[
-        NonNegative, Field(description="what is left of the motion at the tip at its end, m")
+        NonNegative, Field(description="remaining amplitude of the tip at the end, m")
     ] = 0.0
     energy_trend: Annotated[
         Positive | None,
         Field(
-            description="slope of the total energy times the duration, in parts of the range of the kinetic "
-            "energy"
+            description="slope of the total energy times the duration, over the range of the kinetic energy"
         ),
     ] = None
 
@@ -57,8 +56,8 @@ class Expect(Expected):
     """
 
     with_extension: Annotated[
-        Expected | None, Field(description="what is expected of the same scenario with extension")
+        Expected | None, Field(description="expectations of the same scenario with extension")
     ] = None
     without_extension: Annotated[
-        Expected | None, Field(description="what is expected of the same scenario without extension")
+        Expected | None, Field(description="expectations of the same scenario without extension")
     ] = None

@@ -2,17 +2,17 @@
 
 import dataclasses
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import overload
 
 import numpy as np
 
-from continuum_dyn.scenario.profiles import Piecewise
-from continuum_dyn.scenario.rates import piece_array
+from continuum_dyn.scenario.profiles import Piece, Piecewise
+from continuum_dyn.scenario.rates import pieces_from
 
 BLOCK = 1 << 16
-"""Number of intervals that are compared at a time."""
+"""Largest number of a profile's pieces that are at hand at a time."""
 ROUNDING = 1e-12
 """Largest gap between two pieces where they meet that counts as none, in parts of their values."""
 
@@ -33,7 +33,7 @@ class Interval:
 
 
 class Intervals(Sequence[Interval]):
-    """Consecutive intervals between ``edges`` (s), each made when it is asked for: they may be a million.
+    """Consecutive intervals between ``edges`` (s), each made when it is used: there may be a million.
 
     ``pieces`` are each profile's, shape (its pieces, 6); ``active`` their numbers in each interval, shape
     (profiles, intervals).
@@ -58,25 +58,10 @@ class Intervals(Sequence[Interval]):
         start, end = (float(edge) for edge in self.edges[number : number + 2])
         return Interval(start, end, np.array(rows).reshape(len(self.pieces), 6))
 
-    @classmethod
-    def of(cls, interval: Interval) -> "Intervals":
-        """A single interval."""
-        active = np.zeros((len(interval.pieces), 1), dtype=int)
-        return cls(np.array([interval.start, interval.end]), list(interval.pieces[:, None]), active)
-
-    def after(self, time: float) -> "Intervals":
-        """The intervals after a time (s), the first of them cut there."""
-        left = self[int(np.searchsorted(self.edges[1:], time, side="right")) :]
-        if not left:
-            return left
-        start = max(float(left.edges[0]), time)
-        return Intervals(np.concatenate([[start], left.edges[1:]]), left.pieces, left.active)
-
     def breaks(self) -> np.ndarray:
         """Numbers of the intervals at whose start an input jumps, or a wave sets in."""
         numbers = np.arange(1, len(self))
-        blocks = np.split(numbers, range(BLOCK, len(numbers), BLOCK))
-        return np.concatenate([block[self._breaks_at(block)] for block in blocks])
+        return numbers[self._breaks_at(numbers)]
 
     def _breaks_at(self, numbers: np.ndarray) -> np.ndarray:
         found = np.zeros(len(numbers), dtype=bool)
@@ -96,25 +81,93 @@ def _values(pieces: np.ndarray, time: np.ndarray) -> np.ndarray:
     return value + slope * since + amplitude * np.sin(frequency * since + phase)
 
 
-def cut_into_intervals(profiles: Sequence[Piecewise], duration: float) -> Intervals:
+@dataclasses.dataclass(frozen=True)
+class _Fixed:
+    """The profile of a single piece."""
+
+    piece: np.ndarray
+
+    @property
+    def initial(self) -> float:
+        """Value at the start of the piece."""
+        return float(_values(self.piece[None], self.piece[:1])[0])
+
+    def pieces(self) -> list[Piece]:
+        """The piece."""
+        return [tuple(self.piece.tolist())]
+
+
+@dataclasses.dataclass(frozen=True)
+class Timeline(Iterable[Interval]):
+    """The intervals from ``start`` to ``end`` (s), made in blocks: a table may have a million."""
+
+    profiles: tuple[Piecewise, ...]
+    start: float
+    end: float
+
+    def __iter__(self) -> Iterator[Interval]:
+        for block in self.blocks():
+            yield from block
+
+    @classmethod
+    def of(cls, interval: Interval) -> "Timeline":
+        """The timeline of one interval."""
+        return cls(tuple(map(_Fixed, interval.pieces)), interval.start, interval.end)
+
+    @property
+    def first(self) -> Interval:
+        """The first interval."""
+        return next(self.blocks())[0]
+
+    @property
+    def last(self) -> Interval:
+        """What is left of the last interval just before the end."""
+        return self.after(float(np.nextafter(self.end, self.start))).first
+
+    def after(self, time: float) -> "Timeline":
+        """The intervals after a time (s), the first of them cut there."""
+        return dataclasses.replace(self, start=max(self.start, time))
+
+    def inputs(self, time: np.ndarray) -> np.ndarray:
+        """Inputs at increasing times, shape (times, profiles); where two intervals meet, the later's."""
+        parts, done = [], 0
+        for block in self.blocks():
+            end = float(block.edges[-1])
+            until = int(np.searchsorted(time, end, side="right" if end == self.end else "left"))
+            parts.append(inputs_at(block, time[done:until]))
+            done = until
+            if done == time.size:
+                break
+        return np.concatenate(parts)
+
+    def blocks(self) -> Iterator[Intervals]:
+        """Consecutive intervals, together with at most ``BLOCK`` pieces of each profile."""
+        start = self.start
+        while start < self.end:
+            block = self._block(start)
+            yield block
+            start = float(block.edges[-1])
+
+    def _block(self, start: float) -> Intervals:
+        pieces = [pieces_from(profile, start, BLOCK + 1) for profile in self.profiles]
+        starts = [rows[:, 0] for rows in pieces]
+        known = min((begin[-1] for begin in starts if len(begin) > BLOCK), default=self.end)
+        end = min(self.end, max(known, float(np.nextafter(start, self.end))))
+        corners = np.unique(np.concatenate([np.empty(0), *starts]))
+        edges = np.concatenate([[start], corners[(corners > start) & (corners < end)], [end]])
+        active = [np.maximum(np.searchsorted(begin, edges[:-1], side="right") - 1, 0) for begin in starts]
+        return Intervals(edges, pieces, np.array(active, dtype=int).reshape(len(pieces), len(edges) - 1))
+
+
+def cut_into_intervals(profiles: Iterable[Piecewise], duration: float) -> Timeline:
     """Cut the time from 0 to ``duration`` (s) at every corner of any profile."""
-    pieces = [piece_array(profile) for profile in profiles]
-    starts = [rows[:, 0] for rows in pieces]
-    corners = np.unique(np.concatenate([np.empty(0), *starts]))
-    edges = np.concatenate([[0.0], corners[(corners > 0.0) & (corners < duration)], [duration]])
-    active = [np.maximum(np.searchsorted(begin, edges[:-1], side="right") - 1, 0) for begin in starts]
-    return Intervals(edges, pieces, np.array(active, dtype=int).reshape(len(profiles), len(edges) - 1))
+    return Timeline(tuple(profiles), 0.0, duration)
 
 
-def intervals_after(intervals: Intervals, time: float) -> Intervals:
-    """The intervals after a time (s), the first of them cut there."""
-    return intervals.after(time)
-
-
-def join_intervals(intervals: Intervals) -> list[Intervals]:
+def join_intervals(block: Intervals) -> Iterator[Intervals]:
     """Group consecutive intervals between which no input jumps and no wave sets in."""
-    edges = [0, *intervals.breaks().tolist(), len(intervals)]
-    return [intervals[first:last] for first, last in pairwise(edges)]
+    edges = [0, *block.breaks().tolist(), len(block)]
+    return (block[first:last] for first, last in pairwise(edges))
 
 
 def inputs_at(intervals: Sequence[Interval], time: np.ndarray) -> np.ndarray:

@@ -7,7 +7,8 @@ A piece is a row (start, value, slope, amplitude, angular frequency, phase) and 
 from its start to the next one's, so its derivative is a piece, too. At a jump the later piece counts.
 """
 
-from math import pi, sin
+from functools import cached_property
+from math import inf, pi, sin
 from typing import Annotated, Literal, Protocol
 
 import numpy as np
@@ -20,9 +21,9 @@ from statics.support.checked import STRICT, NonNegative, Positive
 TIME_RESOLUTION = 1e-300
 """Shortest time between rows of a table, s; slopes over less are beyond floating point."""
 
-Value = Annotated[float, Field(description="value at all times, in the unit of what is driven")]
-Before = Annotated[float, Field(description="value until then, in the unit of what is driven")]
-After = Annotated[float, Field(description="value from then on, in the unit of what is driven")]
+Value = Annotated[float, Field(description="value at all times, in the unit of the driven quantity")]
+Before = Annotated[float, Field(description="value before the change, in the unit of the driven quantity")]
+After = Annotated[float, Field(description="value after the change, in the unit of the driven quantity")]
 Start = Annotated[NonNegative, Field(description="time at which the ramp starts, s")]
 End = Annotated[Positive, Field(description="time at which the ramp ends, s")]
 
@@ -142,8 +143,8 @@ def _from_rest_to_rest(ramp: Ramp | SmoothRamp, rise: Piece) -> list[Piece]:
 class Sine:
     """``mean`` + ``amplitude`` sin(2 pi ``frequency`` t + ``phase``); ``phase`` in rad."""
 
-    mean: Annotated[float, Field(description="mean value, in the unit of what is driven")]
-    amplitude: Annotated[float, Field(description="amplitude, in the unit of what is driven")]
+    mean: Annotated[float, Field(description="mean value, in the unit of the driven quantity")]
+    amplitude: Annotated[float, Field(description="amplitude, in the unit of the driven quantity")]
     frequency: Annotated[Positive, Field(description="frequency, Hz")]
     phase: Annotated[float, Field(description="phase at the start, rad")] = 0.0
     profile: Literal["sine"] = "sine"
@@ -160,10 +161,15 @@ class Sine:
 
 @dataclass(frozen=True, config=STRICT)
 class Table:
-    """Linear between given times (s) and values; before the first and after the last they hold."""
+    """Linear between given times (s) and values; before the first and after the last they hold.
+
+    Of several ``periods`` these are one. It jumps between two of them if one ends with another value than it
+    begins with.
+    """
 
     time: Annotated[tuple[float, ...], Field(strict=False, min_length=1)]
     value: Annotated[tuple[float, ...], Field(strict=False, min_length=1)]
+    periods: Annotated[int, Field(ge=1)] = 1
     profile: Literal["table"] = "table"
 
     def __post_init__(self) -> None:
@@ -171,35 +177,103 @@ class Table:
             raise InputError(f"{len(self.time)} times, but {len(self.value)} values")
         steps = np.diff(self.time)
         wrong = np.flatnonzero(steps < TIME_RESOLUTION)
-        if not wrong.size:
-            return
-        row = int(wrong[0]) + 2
-        earlier, later = self.time[row - 2 : row]
-        if later <= earlier:
+        if wrong.size:
+            raise InputError(_disorder(int(wrong[0]) + 2, *self.time[wrong[0] : wrong[0] + 2]))
+        if self.periods > 1 and 0.0 < self.period <= np.spacing(self.end):
             raise InputError(
-                f"row {row}: time {later:g} s does not come after {earlier:g} s; times must increase"
+                f"a period of {self.period:g} s is below the rounding of its end, {self.end:g} s"
             )
-        raise InputError(
-            f"row {row}: {later - earlier:g} s after the row before; at least {TIME_RESOLUTION:g} s"
-        )
+
+    @property
+    def period(self) -> float:
+        """Time from the first row to the last, s."""
+        return self.time[-1] - self.time[0]
+
+    @property
+    def end(self) -> float:
+        """Time of the last row of the last period, s."""
+        return self.time[-1] + (self.periods - 1) * self.period
 
     @property
     def initial(self) -> float:
         """Value at the equilibrium that the motion starts from."""
-        return float(np.interp(0.0, self.time, self.value))
+        since = -self.time[0]
+        if self.period < since < self.periods * self.period:
+            since %= self.period
+        return float(np.interp(self.time[0] + since, self.time, self.value))
 
     def pieces(self) -> list[Piece]:
         """One piece before the first row, one from each row to the next, one after the last."""
-        return [tuple(row) for row in self.piece_array().tolist()]
+        return [tuple(row) for row in self.pieces_from(-inf, 2 + self.periods * len(self.time)).tolist()]
 
-    def piece_array(self) -> np.ndarray:
-        """The pieces, shape (rows + 1, 6)."""
-        time, value = np.array(self.time), np.array(self.value)
-        rows = np.zeros((len(time) + 1, 6))
-        rows[0, :2] = min(0.0, self.time[0]), self.value[0]
-        rows[1:, 0], rows[1:, 1] = time, value
-        rows[1:-1, 2] = np.diff(value) / np.diff(time)
+    def pieces_from(self, start: float, count: int) -> np.ndarray:
+        """The piece at time ``start`` (s) and those after it, at most ``count``, shape (pieces, 6)."""
+        spans = len(self.time) - 1
+        last = 1 + self.periods * spans
+        rows = self._rows(np.arange(max(self._number_at(start) - 1, 0), last + 1)[: count + 2], last)
+        active = max(int(np.searchsorted(rows[:, 0], start, side="right")) - 1, 0)
+        return rows[active : active + count]
+
+    def _number_at(self, start: float) -> int:
+        """Number of the piece at that time (s), or of one before it by as much as rounding may hide."""
+        time, spans = self._columns[0], len(self.time) - 1
+        since = start - time[0]
+        if since <= 0.0 or not spans:
+            return 0
+        period = min(int(since / self.period), self.periods - 1)
+        roundings = 8.0 * np.spacing(max(abs(start), self.end))
+        row = int(np.searchsorted(time, start - period * self.period - roundings, side="right"))
+        return period * spans + min(row, spans)
+
+    @cached_property
+    def _columns(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.array(self.time), np.array(self.value)
+
+    def _rows(self, numbers: np.ndarray, last: int) -> np.ndarray:
+        """The pieces of these consecutive numbers: 0 before the first row, ``last`` after the last one."""
+        time, value = self._columns
+        rows = np.zeros((len(numbers), 6))
+        number, row = np.divmod(numbers - 1, max(len(time) - 1, 1))
+        start = np.where(numbers == last, self.end, time[row] + number * self.period)
+        start = np.where(numbers == 0, min(0.0, time[0]), start)
+        rows[:, 0] = np.maximum.accumulate(start)
+        rows[:, 1] = np.where(numbers == last, value[-1], np.where(numbers == 0, value[0], value[row]))
+        inside = (numbers[:-1] > 0) & (numbers[:-1] < last)
+        length = np.diff(rows[:, 0])
+        rises = inside & (length > 0.0)  # what rounding leaves no time for is a jump
+        row = row[:-1][rises]
+        rows[:-1, 2][rises] = (value[row + 1] - value[row]) / length[rises]
         return rows
+
+
+def _disorder(row: int, earlier: float, later: float) -> str:
+    if later <= earlier:
+        return f"row {row}: time {later:g} s does not come after {earlier:g} s; times must increase"
+    return f"row {row}: {later - earlier:g} s after the row before; at least {TIME_RESOLUTION:g} s"
+
+
+def change_times(profile: "Profile") -> tuple[float, float] | None:
+    """Times (s) at which a profile first and last changes after time zero; None if it never does."""
+    match profile:
+        case Constant():
+            found = None
+        case Step():
+            found = (profile.at, profile.at) if profile.before != profile.after else None
+        case Ramp() | SmoothRamp():
+            found = (profile.start, profile.end) if profile.before != profile.after else None
+        case Sine():
+            found = (0.0, inf) if profile.amplitude else None
+        case Table():
+            found = _change_times_of_table(profile)
+    return found
+
+
+def _change_times_of_table(table: Table) -> tuple[float, float] | None:
+    changes = np.flatnonzero(np.diff(table.value))
+    if not changes.size or table.end <= 0.0:
+        return None
+    last = table.time[changes[-1] + 1] + (table.periods - 1) * table.period
+    return (max(0.0, table.time[changes[0]]), last) if last > 0.0 else None
 
 
 def lower_bound(profile: "Profile") -> float:

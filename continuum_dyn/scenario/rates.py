@@ -34,19 +34,21 @@ def derivative(piece: Piece) -> Piece:
     return start, slope, 0.0, amplitude * frequency, frequency, phase + pi / 2
 
 
-def piece_array(profile: Piecewise) -> np.ndarray:
-    """The profile's pieces, shape (pieces, 6)."""
+def pieces_from(profile: Piecewise, start: float, count: int) -> np.ndarray:
+    """The profile's piece at time ``start`` (s) and those after it, at most ``count``, shape (pieces, 6)."""
     if isinstance(profile, Rate):
         _, value, slope, amplitude, frequency, phase = range(6)
-        found = piece_array(profile.of)
+        found = pieces_from(profile.of, start, count)
         rows = found.copy()
         rows[:, value], rows[:, slope] = found[:, slope], 0.0
         rows[:, amplitude] *= found[:, frequency]
         rows[:, phase] += pi / 2
         return rows
     if isinstance(profile, Table):
-        return profile.piece_array()
-    return np.array(profile.pieces(), dtype=float).reshape(-1, 6)
+        return profile.pieces_from(start, count)
+    rows = np.array(profile.pieces(), dtype=float).reshape(-1, 6)
+    active = max(int(np.searchsorted(rows[:, 0], start, side="right")) - 1, 0)
+    return rows[active : active + count]
 
 
 def check_smooth(profile: Profile, name: str, unit: str) -> None:
@@ -65,7 +67,9 @@ def check_smooth(profile: Profile, name: str, unit: str) -> None:
 
 
 def _from_rest(profile: Profile) -> list[Piece]:
-    """The rest before time zero, and the profile's pieces from there on."""
+    """The rest before time zero, and the profile's pieces from there on; periods repeat the second one."""
+    if isinstance(profile, Table):
+        profile = dataclasses.replace(profile, periods=min(profile.periods, 2))
     pieces = profile.pieces()
     ends = [*(later[0] for later in pieces[1:]), inf]
     moving = [piece for piece, end in zip(pieces, ends, strict=True) if end > 0.0]

@@ -32,10 +32,10 @@ class Solver:
     rtol: Annotated[float, Field(ge=1e-14, lt=1)] = 1e-7
     atol: Annotated[Positive, Field(description="absolute tolerance of an integrator")] = 1e-9
     step: Positive | None = None
-    max_steps: Annotated[int, Field(ge=1, description="most steps that a motion may take")] = 10_000_000
-    max_seconds: Annotated[
-        Positive, Field(description="longest time that a motion may take to compute, s")
-    ] = 3600.0
+    max_steps: Annotated[int, Field(ge=1, description="largest number of steps of a motion")] = 10_000_000
+    max_seconds: Annotated[Positive, Field(description="longest computing time of a motion or a ramp, s")] = (
+        3600.0
+    )
 
     def __post_init__(self) -> None:
         if self.step is not None and not self.has_fixed_step:

@@ -22,7 +22,7 @@ MAX_STORED = 20_000_000
 
 
 class StudyKind(ABC):
-    """Base of the studies: what others ask of each, answered for an arm at rest."""
+    """Base of the studies, with defaults for an arm at rest."""
 
     takes_lists: ClassVar[bool] = False
     """Whether drives are lists of values; otherwise they are profiles."""
@@ -69,7 +69,7 @@ class EquilibriumStudy(StudyKind):
 
 @dataclass(frozen=True, config=STRICT)
 class RampStudy(StudyKind):
-    """Equilibria under one set of tensions and load factors after another."""
+    """Equilibria at a sequence of tensions and load factors."""
 
     takes_lists: ClassVar[bool] = True
 
@@ -77,7 +77,7 @@ class RampStudy(StudyKind):
         Literal["stable", "arc_length"],
         Field(
             description='"stable": each is a stable equilibrium, searched from the one before; "arc_length": '
-            "the path of equilibria from the first one on, through its folds, stable or not"
+            "the path of equilibria from the first one, through its folds, stable or not"
         ),
     ] = "stable"
     kind: Literal["ramp"] = "ramp"
@@ -111,10 +111,10 @@ class MotionStudy(StudyKind):
 
     duration: Annotated[Positive, Field(description="length of the motion, s")]
     samples: Annotated[
-        int, Field(ge=2, le=MAX_SAMPLES, description="number of samples: uniform, with both ends included")
+        int, Field(ge=2, le=MAX_SAMPLES, description="number of equally spaced samples, both ends included")
     ] = 1001
     static_path: Annotated[
-        bool, Field(description="whether the equilibrium of every sample's tensions is asked for as well")
+        bool, Field(description="whether to compute the equilibrium at every sample, too")
     ] = False
     kind: Literal["motion"] = "motion"
 

@@ -1,1 +1,1 @@
-"""A TOML file and changes to it come in; a scenario goes out, or words about what is wrong in the file."""
+"""A TOML file and changes to it come in; a scenario goes out, or a message about the errors in the file."""

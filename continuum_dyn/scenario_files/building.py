@@ -3,29 +3,33 @@
 from dataclasses import replace
 from typing import Any
 
+from continuum_dyn.effects import MaterialDamping
+from continuum_dyn.scenario.first_mode import retardation_time
 from continuum_dyn.scenario.profiles import Constant, Profile
 from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.scenario_files.arm_numbers import Numbers, arm_numbers
 from continuum_dyn.scenario_files.csv_table import Tables
+from continuum_dyn.scenario_files.self_contained import self_contained
 from continuum_dyn.scenario_files.tables import (
     BaseTable,
     CableTable,
-    EffectsTable,
     LoadTable,
+    MaterialDampingTable,
     ScenarioFile,
     TableFile,
 )
-from statics.arm import PRESETS, Arm, Base, Cable, PerDisk
+from statics.arm import Arm, Base, Cable, PerDisk
 from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
-from statics.errors import InputError, did_you_mean
+from statics.errors import InputError
 from statics.scene import Scene
 
 
 def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
-    """Build the scenario of a checked file; ``name`` is its title where the file gives none."""
+    """Build the scenario of a checked file; ``name`` is its title if the file gives none."""
     is_ramp = file.study.takes_lists
-    effects = [
-        effect for name in EffectsTable.model_fields if (effect := getattr(file.effects, name)) is not None
-    ]
+    given = {name: effect for name, effect in file.effects if effect is not None}
+    damping = given.pop("material_damping", None)
+    effects = list(given.values())
     if file.cables:
         effects.append(Cables())
     if any(cable.friction > 0 for cable in file.cables):
@@ -44,8 +48,12 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     motion = _base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
+    numbers = arm_numbers(file.arm)
+    scene = Scene(replace(_arm(file, numbers), base=base), effects)
+    if damping is not None:
+        scene = _damped(scene, damping)
     return Scenario(
-        scene=Scene(replace(_arm(file), base=base), effects),
+        scene=scene,
         drives=drives,
         study=file.study,
         solver=file.solver,
@@ -54,22 +62,28 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
         base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or name,
-        text=text,
+        text=self_contained(text, numbers, scene),
         tables=tables.texts,
     )
 
 
-def _arm(file: ScenarioFile) -> Arm:
-    given = {name: value for name, value in file.arm if value is not None}
-    preset, _ = given.pop("preset", None), given.pop("subsegments", None)
-    if preset is not None and preset not in PRESETS:
-        raise InputError(f"[arm] unknown preset '{preset}'.{did_you_mean(preset, PRESETS)}")
-    numbers = {**({} if preset is None else PRESETS[preset]), **_with_radius(given)}
-    missing = [name for name in ("disks", "disk_spacing") if name not in numbers]
-    if missing:
+def _damped(scene: Scene, damping: MaterialDampingTable) -> Scene:
+    """The scene with its core's damping, whose retardation time is given or follows from a damping ratio."""
+    time, ratio = damping.retardation_time, damping.damping_ratio
+    if time is not None and ratio is None:
+        return Scene(scene.arm, (*scene.effects, MaterialDamping(time)))
+    if ratio is None or time is not None:
         raise InputError(
-            f"[arm] missing {' and '.join(missing)}. Give them, or a preset: {', '.join(PRESETS)}."
+            "[effects] material_damping: give retardation_time (s) or damping_ratio, and not both."
         )
+    try:
+        return Scene(scene.arm, (*scene.effects, MaterialDamping(retardation_time(scene, ratio))))
+    except InputError as error:
+        raise InputError(f"[effects] material_damping: {error}") from error
+
+
+def _arm(file: ScenarioFile, numbers: Numbers) -> Arm:
+    numbers = dict(numbers)
     cables = tuple(_cable(cable, f"cable_{number}") for number, cable in enumerate(file.cables, start=1))
     lists = {name: values for name, values in numbers.items() if isinstance(values, tuple)}
     if isinstance(numbers["disk_spacing"], tuple):
@@ -80,26 +94,12 @@ def _arm(file: ScenarioFile) -> Arm:
 
 
 def _subsegments(given: int | str | None) -> int:
-    """Segments from disk to disk; where the program chooses them it starts from one."""
+    """Segments from disk to disk; if the program chooses them it starts from one."""
     if given is None or given == "auto":
         return 1
     if isinstance(given, str) or given < 1:
         raise InputError(f'[arm] subsegments: a number from 1 on, or "auto"; read {given!r}.')
     return given
-
-
-def _with_radius(given: dict[str, Any]) -> dict[str, Any]:
-    if "core_radius" not in given:
-        return given
-    both = [name for name in ("area", "second_moment") if name in given]
-    if both:
-        raise InputError(f"[arm] core_radius already sets {' and '.join(both)}. Give one or the other.")
-    radius = given["core_radius"]
-    rest = {name: value for name, value in given.items() if name != "core_radius"}
-    if not isinstance(radius, tuple):
-        return {**rest, **Arm.round_core(radius)}
-    cores = [Arm.round_core(each) for each in radius]
-    return {**rest, **{name: tuple(core[name] for core in cores) for name in cores[0]}}
 
 
 def _cable(cable: CableTable, numbered: str) -> Cable:
@@ -110,6 +110,7 @@ def _cable(cable: CableTable, numbered: str) -> Cable:
         cable.anchor,
         cable_stiffness=cable.cable_stiffness,
         friction=cable.friction,
+        start=cable.start,
         **slip,
     )
 

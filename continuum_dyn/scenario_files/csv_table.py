@@ -4,7 +4,7 @@ import csv
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import islice
-from math import inf, nextafter
+from math import inf
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -51,8 +51,8 @@ def table_text(scenario: Path, name: str) -> str:
 def read_table(name: str, text: str, quantity: str, periods: int = 1) -> Table:
     """A table profile from its text: CSV with the header ``time,tension`` (s, N), or ``time,factor``.
 
-    Its rows come ``periods`` times, one after the other. Raises ``InputError`` that names the table and the
-    row that is wrong.
+    Its rows come ``periods`` times, one after the other; it jumps if they end with another value than they
+    begin with. Raises ``InputError`` that names the table and the row that is wrong.
     """
     rows = _rows(name, text)
     if not rows or [cell.strip() for cell in rows[0]] != ["time", quantity]:
@@ -69,33 +69,18 @@ def read_table(name: str, text: str, quantity: str, periods: int = 1) -> Table:
         raise InputError(
             f"table '{name}', row {negative[0]}: a cable cannot push; read {values[negative[0] - 1][1]:g}"
         )
-    rows = _repeat(name, values, periods)
+    if periods > 1 and len(values) * periods > MAX_ROWS:
+        raise InputError(
+            f"table '{name}': {periods} periods of {len(values)} rows. Allowed: {MAX_ROWS} rows."
+        )
     try:
-        return Table(tuple(t for t, _ in rows), tuple(tau for _, tau in rows))
+        return Table(tuple(t for t, _ in values), tuple(value for _, value in values), periods)
     except InputError as error:
         raise InputError(f"table '{name}': {error}") from error
     except ValidationError as error:
         detail = error.errors()[0]
         row = int(detail["loc"][-1]) + 1
         raise InputError(f"table '{name}', row {row}: {detail['msg']}; read {detail['input']!r}") from error
-
-
-def _repeat(name: str, rows: list[tuple[float, float]], periods: int) -> list[tuple[float, float]]:
-    """The rows of all periods. If a period ends with another value than it began with, the table jumps.
-
-    A jump is a pair of rows whose times are neighbours in floating point, and stays one.
-    """
-    if periods == 1:
-        return rows
-    if len(rows) * periods > MAX_ROWS:
-        raise InputError(f"table '{name}': {periods} periods of {len(rows)} rows. Allowed: {MAX_ROWS} rows.")
-    length = rows[-1][0] - rows[0][0]
-    found = list(rows)
-    for number in range(1, periods):
-        joins = rows[0][1] == rows[-1][1]
-        for t, value in rows[1 if joins else 0 :]:
-            found.append((max(t + number * length, nextafter(found[-1][0], inf)), value))
-    return found
 
 
 def _rows(name: str, text: str) -> list[list[str]]:

@@ -9,15 +9,12 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import shorten
-from typing import Any, get_origin
+from typing import Any
 
-from continuum_dyn.scenario_files.tables import ScenarioFile
-from continuum_dyn.scenario_files.toml_text import read_toml, toml_text
+from continuum_dyn.scenario_files.messages import LISTS
+from continuum_dyn.scenario_files.toml_text import inline_toml, read_toml, toml_text
 from statics.errors import InputError, did_you_mean
 from statics.support.checked import LONGEST_LINE
-
-LISTS = [name for name, field in ScenarioFile.model_fields.items() if get_origin(field.annotation) is list]
-"""Lists of tables, which a file may leave out."""
 
 _KEY_AND_VALUE = re.compile(r"""((?:"[^"]*"|'[^']*'|[^"'=])+)=(.+)""")
 _WORD = re.compile(r"[A-Za-z][\w./-]*")
@@ -35,7 +32,7 @@ class Override:
 
 
 def apply_overrides(text: str, name: str, overrides: Sequence[str]) -> str:
-    """Apply changes to the text of the scenario ``name``: TOML written anew, the changes listed in a comment.
+    """Apply changes to the text of the scenario ``name``: rewritten TOML, with the changes in a comment.
 
     They are also appended to its title, unless a change sets it. Raises ``InputError`` for text that is not
     an override or names no table, ``tomllib.TOMLDecodeError`` for a scenario that is not TOML.
@@ -120,7 +117,8 @@ def _no_table(change: Override, depth: int, place: Any) -> InputError:
             f"--set {_short(change.text)}: {where} is a list of tables. Name a table and its key."
         )
     return InputError(
-        f"--set {_short(change.text)}: {where} is {place!r:.60}, without keys. Set it as a whole: {where}=..."
+        f"--set {_short(change.text)}: {where} is {_short(inline_toml(place))}, without keys. "
+        f"Set it as a whole: {where}=..."
     )
 
 

@@ -6,7 +6,7 @@ with its place, what was read, and the nearest allowed word.
 
 import json
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -18,11 +18,11 @@ from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import FIXED_STEP
 from continuum_dyn.scenario_files.building import build
 from continuum_dyn.scenario_files.csv_table import Tables, table_text
-from continuum_dyn.scenario_files.messages import explain
+from continuum_dyn.scenario_files.messages import explain, mistakes_of, where
 from continuum_dyn.scenario_files.overrides import apply_overrides
 from continuum_dyn.scenario_files.tables import ScenarioFile
 from continuum_dyn.scenario_files.text import read_text
-from continuum_dyn.scenario_files.toml_text import read_toml
+from continuum_dyn.scenario_files.toml_text import read_toml, toml_mistake
 from statics.errors import InputError
 from statics.support.plain_text import plain_line
 
@@ -57,51 +57,84 @@ def parse(
     like ``load_scenario``.
     """
     try:
-        text = apply_overrides(text, plain_line(path.name), overrides)
+        text = _changed(text, path, overrides)
         content = read_toml(text)
-        _check_sizes(content, "")
-        file = ScenarioFile.model_validate_json(json.dumps(content, default=str))
-        _check_tolerances(content)
-        return build(file, plain_line(path.stem), text, Tables(text_of_table)), file.expect
+        mistakes = [*_unphysical_numbers(content, []), *_crossed_tolerances(content)]
+        file = _checked(content, mistakes)
+        if mistakes or file is None:
+            raise InputError(explain(path, mistakes))
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: not a TOML file: {error}.") from error
-    except ValidationError as error:
-        raise InputError(explain(path, error)) from error
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(f"{path}: {toml_mistake(text, error)}") from error
     except RecursionError as error:
         raise InputError(f"{path}: nested too deeply to be a scenario.") from error
+    try:
+        return build(file, plain_line(path.stem), text, Tables(text_of_table)), file.expect
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
 
 
-def _check_sizes(content: Any, place: str) -> None:
-    """Refuse numbers of no physical arm, whose products would be beyond floating point."""
+def _changed(text: str, path: Path, overrides: Sequence[str]) -> str:
+    try:
+        return apply_overrides(text, plain_line(path.name), overrides)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _checked(content: dict[str, Any], mistakes: list[str]) -> ScenarioFile | None:
+    """The tables of a file, or None after adding what is wrong with them to the mistakes."""
+    try:
+        return ScenarioFile.model_validate_json(json.dumps(_physical(content), default=str))
+    except ValidationError as error:
+        mistakes += mistakes_of(error)
+    except InputError as error:
+        mistakes.append(str(error))
+    return None
+
+
+def _unphysical_numbers(content: Any, place: list[str]) -> Iterator[str]:
+    """Mistakes of numbers of no physical arm, whose products would be beyond floating point."""
     if isinstance(content, dict):
         for key, value in content.items():
-            _check_sizes(value, f"{place} {key}".lstrip())
+            yield from _unphysical_numbers(value, [*place, key])
     elif isinstance(content, list):
-        for number, value in enumerate(content, start=1):
-            _check_sizes(value, f"{place} number {number}" if isinstance(value, dict) else place)
-    elif type(content) in (int, float) and not _is_physical(abs(content)):
-        raise InputError(
-            f"{place[:60]!r}: too {'large' if abs(content) > 1 else 'small'} a number to compute with. "
+        for number, value in enumerate(content):
+            yield from _unphysical_numbers(value, [*place, str(number)])
+    elif not _is_physical(content):
+        yield (
+            f"{where(place)[:60]}: too {'large' if abs(content) > 1 else 'small'} a number to compute with. "
             f"Allowed: 0, and sizes from {SMALLEST:g} to {LARGEST:g}, in SI units."
         )
 
 
-def _is_physical(size: float) -> bool:
-    """Whether a number can be computed with; pydantic reports those that are not finite."""
+def _physical(content: Any) -> Any:
+    """The content with 1 for each such number, so that what else is wrong is found as well."""
+    if isinstance(content, dict):
+        return {key: _physical(value) for key, value in content.items()}
+    if isinstance(content, list):
+        return [_physical(value) for value in content]
+    return content if _is_physical(content) else 1
+
+
+def _is_physical(value: Any) -> bool:
+    """Whether it is no number that is too large or small; pydantic reports those that are not finite."""
+    if type(value) not in (int, float):
+        return True
+    size = abs(value)
     return size == 0 or SMALLEST <= size <= LARGEST or not size < inf
 
 
-def _check_tolerances(content: dict[str, Any]) -> None:
-    settings = content.get("solver", {})
+def _crossed_tolerances(content: dict[str, Any]) -> Iterator[str]:
+    """Mistakes of tolerances beside what decides them."""
+    settings = content.get("solver")
+    if not isinstance(settings, dict):
+        return
     given = [name for name in ("rtol", "atol") if name in settings]
     if given and settings.get("method") in FIXED_STEP:
-        raise InputError(
+        yield (
             f'[solver] {" and ".join(given)} beside method = "midpoint": its steps are equal. Give step (s).'
         )
     if given and "accuracy" in content:
-        raise InputError(
+        yield (
             f"[solver] {' and '.join(given)} beside [accuracy]: the accuracy decides the tolerances. "
             "Give one or the other."
         )

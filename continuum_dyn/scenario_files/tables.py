@@ -11,20 +11,19 @@ from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, RampStudy, StepResponseStudy
 from continuum_dyn.scenario_files.csv_table import MAX_ROWS
 from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassList, Payload, PositiveList
+from statics.materials import MATERIALS
 from statics.support.checked import STRICT, Line, NonNegative, Positive, Vector
 
 
 class TableFile(BaseModel):
-    """A profile kept in a CSV file beside the scenario; of several ``periods`` the file is one."""
+    """A profile from a CSV file in the scenario's folder, repeated for several ``periods``."""
 
     model_config = STRICT
     profile: Literal["table"]
     file: Annotated[
-        Line, Field(description="CSV file beside the scenario; its first line is time,tension or the like")
+        Line, Field(description="CSV file in the scenario's folder, with a first line such as time,tension")
     ]
-    periods: Annotated[
-        int, Field(ge=1, le=MAX_ROWS, description="how often its rows come, one time after the other")
-    ] = 1
+    periods: Annotated[int, Field(ge=1, le=MAX_ROWS, description="number of repetitions of its rows")] = 1
 
 
 UNKNOWN_PROFILE = "profile"
@@ -94,22 +93,37 @@ Preset = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(PRESETS)
 SUBSEGMENTS = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_SEGMENTS}, {"const": "auto"}]}
 
 
+MaterialName = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(MATERIALS)})]
+
+
 class ArmTable(BaseModel):
-    """[arm]: its numbers; what is given beats the preset."""
+    """[arm]: its numbers, directly or from dimensions and materials; they override the preset."""
 
     model_config = STRICT
     preset: Annotated[
-        Preset | None, Field(description="the arm of a paper: its numbers hold where none are given")
+        Preset | None, Field(description="the arm of a paper, whose numbers apply to all keys not given")
     ] = None
     disks: DiskNumber | None = None
+    length: Annotated[
+        Positive | None,
+        Field(description="undeformed length of the core, base to last disk, m; sets disk_spacing, or disks"),
+    ] = None
     disk_spacing: PositiveEach | None = None
+    core_material: MaterialName | None = None
     youngs_modulus: PositiveEach | None = None
     core_radius: PositiveEach | None = None
+    core_outer_radius: PositiveEach | None = None
+    core_inner_radius: PositiveEach | None = None
     area: PositiveEach | None = None
     second_moment: PositiveEach | None = None
+    core_density: Positive | None = None
+    disk_radius: PositiveEach | None = None
+    disk_inner_radius: PositiveEach | None = None
+    disk_thickness: PositiveEach | None = None
+    disk_material: MaterialName | None = None
+    disk_density: PositiveEach | None = None
     disk_mass: MassEach | None = None
     disk_inertia: MassEach | None = None
-    core_density: Positive | None = None
     reference_curvature: NumberEach | None = None
     subsegments: Annotated[
         Annotated[int | Line, WithJsonSchema(SUBSEGMENTS)] | None,
@@ -118,14 +132,18 @@ class ArmTable(BaseModel):
 
 
 class CableTable(BaseModel):
-    """One of [[cables]]: driven by its tension, or by its displacement with its stiffness."""
+    """One of [[cables]]: driven by its tension, or by its displacement and stiffness."""
 
     model_config = STRICT
     name: Annotated[
         Annotated[Line, Field(min_length=1, max_length=40)] | None,
-        Field(description="what the cable is called in results, logs and plots"),
+        Field(description="name of the cable in results, logs and plots"),
     ] = None
     hole_offset: NumberEach
+    start: Annotated[
+        DiskNumber | None,
+        Field(description="disk where it leaves a sheath that the disks before do not feel; else the base"),
+    ] = None
     anchor: DiskNumber | None = None
     tension: Tension | None = None
     cable_displacement: AnyDrive | None = None
@@ -135,7 +153,7 @@ class CableTable(BaseModel):
 
 
 class LoadTable(BaseModel):
-    """One of [[loads]]; with ``factor`` it changes in time, a ``follower`` force turns with its disk."""
+    """One of [[loads]]: with ``factor`` it changes in time, as ``follower`` its force turns with the disk."""
 
     model_config = STRICT
     disk: DiskNumber
@@ -146,7 +164,7 @@ class LoadTable(BaseModel):
 
 
 class BaseTable(BaseModel):
-    """[base]: numbers, or how they change in time."""
+    """[base]: its pose, as numbers or as profiles over time."""
 
     model_config = STRICT
     x: NumberOrProfile = 0.0
@@ -154,27 +172,44 @@ class BaseTable(BaseModel):
     angle: NumberOrProfile = 0.0
 
 
+class MaterialDampingTable(BaseModel):
+    """[effects] material_damping: by its retardation time, or by the first mode's damping ratio."""
+
+    model_config = STRICT
+    retardation_time: NonNegative | None = None
+    damping_ratio: Annotated[
+        Positive | None,
+        Field(
+            description="damping ratio of the first mode of the unloaded arm (no gravity, tension or loads); "
+            "sets retardation_time"
+        ),
+    ] = None
+
+
+OF_EFFECTS: dict[str, type] = EFFECTS | {"material_damping": MaterialDampingTable}
+"""The tables of effects by name: their own fields, but where a description leads to them."""
+
 NAMED_ELSEWHERE = ("cables", "cable_friction", "loads")
 """Effects that come with a table of their own, or with a key in it."""
 
 EffectsTable: type[BaseModel] = create_model(
     "EffectsTable",
     __config__=STRICT,
-    __doc__="[effects]: the effects in play; what is not named is in no equation.",
-    **{name: (effect | None, None) for name, effect in EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
+    __doc__="[effects]: the effects to include; others are left out of the equations.",
+    **{name: (effect | None, None) for name, effect in OF_EFFECTS.items() if name not in NAMED_ELSEWHERE},  # pyright: ignore[reportArgumentType, reportCallIssue]
 )
 
 StudyTable = Annotated[
     EquilibriumStudy | RampStudy | MotionStudy | StepResponseStudy,
-    Field(discriminator="kind", description="[study]: what is asked of the arm."),
+    Field(discriminator="kind", description="[study]: the kind of simulation."),
 ]
 
 
 class ScenarioFile(BaseModel):
-    """A scenario of continuum-dyn: an arm, the effects in play, and what is asked."""
+    """A scenario of continuum-dyn: an arm, its effects, its drives, and a study."""
 
     model_config = STRICT
-    title: Annotated[Line, Field(description="what results, logs and plots are headed with")] = ""
+    title: Annotated[Line, Field(description="title of results, logs and plots")] = ""
     arm: ArmTable
     base: BaseTable | None = None
     effects: EffectsTable  # pyright: ignore[reportInvalidTypeForm]

@@ -4,6 +4,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
+from textwrap import shorten
 from typing import Any
 
 MAX_DEPTH = 32
@@ -12,6 +13,24 @@ _WORD_AND_DOT = r"""(?<![\w-])(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"
 _DEEP_KEY = re.compile(f"(?:{_WORD_AND_DOT}){{{MAX_DEPTH}}}")
 LARGEST_DECIMAL = 1 << 64
 """Largest size of an integer that is written in decimal digits, of which Python writes no thousands."""
+_PLACE = re.compile(r"\(at line (\d+), column (\d+)\)$")
+LONGEST_SHOWN = 60
+"""Largest number of characters of a line that is shown as it was read."""
+MISTAKES = {
+    "Invalid value": 'no value after =, such as 1.0, true, "text in quotes" or a list in [ ]',
+    "Invalid statement": "neither KEY = VALUE nor a [table]",
+    "Expected newline": "more than one value, where numbers have a point and no comma",
+    "Expected '='": "a key without = and a value",
+    "Expected ']'": "a [table] without its last bracket",
+    "Cannot overwrite": "a key that was given before",
+    "Cannot declare": "a table that was begun before; give it once, or [[NAME]] for each of a list",
+    "Cannot mutate": "a table that was closed before",
+    "Unclosed": "a list without its last bracket",
+    "Unterminated": "a text without its last quote",
+    "Duplicate": "a key that was given before",
+    "Illegal character": "a character that a text on one line cannot hold",
+}
+"""Words for the mistakes that Python's reader of TOML names, by how its messages begin."""
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -25,6 +44,18 @@ def read_toml(text: str) -> dict[str, Any]:
         raise
     except ValueError as error:  # Python refuses integers of some thousand digits
         raise tomllib.TOMLDecodeError("a number of too many digits to compute with") from error
+
+
+def toml_mistake(text: str, error: tomllib.TOMLDecodeError) -> str:
+    """Message about text that is not TOML: the line, and what is wrong with it."""
+    message = str(error)
+    place = _PLACE.search(message)
+    what = next((words for start, words in MISTAKES.items() if message.startswith(start)), "")
+    lines = text.splitlines()
+    if place is None or not 0 < int(place[1]) <= len(lines):
+        return f"not a TOML file: {what or message}."
+    line = shorten(lines[int(place[1]) - 1], LONGEST_SHOWN, placeholder=" ...")
+    return f"not a TOML file, line {place[1]}: {what or 'it is no TOML from column ' + place[2]}; read {line}"
 
 
 def toml_text(content: Mapping[str, Any]) -> str:
@@ -46,18 +77,19 @@ def _has_headers(value: Any) -> bool:
 
 
 def _assignments(table: Mapping[str, Any]) -> Iterator[str]:
-    return (f"{_key(name)} = {_inline(value)}" for name, value in table.items())
+    return (f"{_key(name)} = {inline_toml(value)}" for name, value in table.items())
 
 
 def _key(name: str) -> str:
     return name if _BARE_KEY.fullmatch(name) else _quote(name)
 
 
-def _inline(value: Any) -> str:
+def inline_toml(value: Any) -> str:
+    """A value on one line."""
     if isinstance(value, dict):
         return f"{{ {', '.join(_assignments(value))} }}" if value else "{}"
     if isinstance(value, list):
-        return f"[{', '.join(map(_inline, value))}]"
+        return f"[{', '.join(map(inline_toml, value))}]"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

@@ -39,8 +39,8 @@ def simulate(
     while it runs. With a ``resumption`` a motion continues from its last sample; if an accuracy is requested,
     its trials restart.
     Raises ``InputError`` for a scene that cannot be simulated, ``KernelCacheError`` if kernels cannot be
-    kept. All that happens while solving is an outcome, not an exception, Ctrl-C too: what was computed by
-    then is in the run. Pressed again, it raises ``KeyboardInterrupt``.
+    kept. Every event during solving, Ctrl-C included, is an outcome, not an exception: the run holds all that
+    was computed. A second Ctrl-C raises ``KeyboardInterrupt``.
     """
     if budget is None:
         budget = Budget(scenario.solver.max_steps, scenario.solver.max_seconds)

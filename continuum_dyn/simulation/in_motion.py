@@ -70,7 +70,7 @@ def _integrate_and_check(
         else:
             moved = _integrate_to_accuracy(motion, solver, scenario.accuracy.tip, monitor, sink)
     trajectory, length = moved.trajectory, scenario.scene.arm.total_length
-    unbalanced = unbalanced_message(trajectory, moved.solver.tolerance(length))
+    unbalanced = unbalanced_message(trajectory, moved.solver, length, scenario.solver.chooses_method)
     if unbalanced is not None:
         monitor.stop(Outcome.DIVERGED, unbalanced)
     end, message = _find_end(motion, trajectory)
@@ -161,7 +161,7 @@ def _find_end(motion: Motion, trajectory: Trajectory) -> tuple[Equilibrium, str]
 
 
 def _rests_at(end: Equilibrium, motion: Motion, trajectory: Trajectory) -> bool:
-    """Whether the tip has reached that equilibrium, or where else friction may leave it."""
+    """Whether the tip has reached that equilibrium, or another position that friction allows."""
     rests = [rest.tip for rest in motion.statics.rests(end)]
     return bool(rests) and tip_gap(trajectory.tip, rests) < motion.scenario.settled_within
 

@@ -1,12 +1,12 @@
-"""The equations of motion through a solver with SciPy's interface, from corner to corner.
+"""Integration of the equations of motion by a solver with SciPy's interface, from corner to corner.
 
-No step crosses a corner of a profile. Solvers restart there; the chain's own only where inputs jump or a
-wave begins: elsewhere accelerations are continuous, and the step size carries over.
+No step crosses a corner of a profile. Solvers restart there; the chain's own only if inputs jump or a
+wave starts: at other corners accelerations are continuous, and the step size continues.
 """
 
 import warnings
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ from continuum_dyn.integrators import METHODS, Budget, Monitor, check
 from continuum_dyn.integrators.methods import drive_frequency
 from continuum_dyn.modes import fastest_frequency
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Interval, Intervals, inputs_at, join_intervals
+from continuum_dyn.scenario.intervals import Interval, Intervals, Timeline, inputs_at, join_intervals
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.samples import Samples
 from continuum_dyn.simulation.trajectory import Trajectory
@@ -32,25 +32,26 @@ PART_OF_PERIOD = 1 / 20
 """Default step of a method with equal steps, in the shortest period of the arm or of its drive."""
 
 
-def with_step(dynamics: Dynamics, solver: Solver, intervals: Intervals, y: np.ndarray) -> Solver:
+def with_step(dynamics: Dynamics, solver: Solver, timeline: Timeline, y: np.ndarray) -> Solver:
     """The solver's settings, with the default step of its method from rest at ``y`` if it takes one."""
     if not solver.has_fixed_step or solver.step is not None:
         return solver
-    drive = max(map(drive_frequency, intervals))
-    whole = 2.0 * np.pi / (intervals[-1].end - intervals[0].start)
-    fastest = max(fastest_frequency(dynamics, intervals[0], y), drive, whole)
+    drive = max(map(drive_frequency, timeline))
+    whole = 2.0 * np.pi / (timeline.end - timeline.start)
+    fastest = max(fastest_frequency(dynamics, timeline.first, y), drive, whole)
     return replace(solver, step=PART_OF_PERIOD * 2.0 * np.pi / fastest)
 
 
 def warm_up(dynamics: Dynamics, solver: Solver, interval: Interval) -> None:
-    """Compile or load the kernels of the method, so that what follows is solving alone."""
+    """Compile or load the kernels of the method, so that later calls only solve."""
     method = METHODS[solver.method]
     brief = Interval(interval.start, interval.start + BRIEF, interval.pieces)
     y = dynamics.state(np.zeros((dynamics.scene.arm.segments, dynamics.dofs)))
     dynamics.clearance(y)
     if method.on_chain:
         unwatched = Monitor(inspect=lambda _t, _y: None, budget=Budget(steps=1))
-        integrate(dynamics, Intervals.of(brief), np.array([brief.start, brief.end]), y, solver, unwatched)
+        timeline = Timeline.of(brief)
+        integrate(dynamics, timeline, np.array([brief.start, brief.end]), y, solver, unwatched)
         return
     dynamics.rate(interval.start, y, interval)
     dynamics.observe(y[None, :], interval.inputs(np.array([interval.start])))
@@ -88,36 +89,36 @@ def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome
 
 def integrate(
     dynamics: Dynamics,
-    intervals: Intervals,
+    timeline: Timeline,
     samples: np.ndarray,
     y: np.ndarray,
     solver: Solver,
     monitor: Monitor,
     gathered: Samples | None = None,
 ) -> Trajectory:
-    """The motion from state ``y`` over all intervals, at ``samples`` (s; both ends included).
+    """The motion from state ``y`` over the whole timeline, at ``samples`` (s; both ends included).
 
     They join those that are ``gathered`` already. A run that the monitor stops early keeps the samples up to
     there, and the last acceptable state. Raises ``InputError`` if the method cannot integrate the scene.
     """
     check(dynamics.scene, solver.method)
-    start = intervals[0].start
+    start, first = timeline.start, timeline.first
     monitor.reached = (start, y)
     steps, rejections = monitor.steps, monitor.rejections
-    solver = with_step(dynamics, solver, intervals, y)
+    solver = with_step(dynamics, solver, timeline, y)
     gathered = gathered or Samples(dynamics)
     samples = samples[samples > gathered.latest]
     done = int(np.searchsorted(samples, start, side="right"))
-    gathered.add(samples[:done], np.tile(y, (done, 1)), intervals[0].inputs(samples[:done]), np.zeros(done))
+    gathered.add(samples[:done], np.tile(y, (done, 1)), first.inputs(samples[:done]), np.zeros(done))
     counters: Counter[str] = Counter()
     before = None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        for joined in _group(dynamics, solver, intervals):
+        for joined in _group(dynamics, solver, timeline):
             if before is not None:
                 add_jump(dynamics, before, joined[0], monitor)
             before = joined[-1]
-            side = "right" if before.end == intervals[-1].end else "left"
+            side = "right" if before.end == timeline.end else "left"
             until = int(np.searchsorted(samples, before.end, side=side))
             stepper = _solve(dynamics, solver, joined, samples[done:until], monitor, gathered)
             counters.update(_count_work(stepper, dynamics, solver))
@@ -160,14 +161,17 @@ def _count_work(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, i
     }
 
 
-def _group(dynamics: Dynamics, solver: Solver, intervals: Intervals) -> Sequence[Intervals]:
+def _group(dynamics: Dynamics, solver: Solver, timeline: Timeline) -> Iterator[Intervals]:
     """The intervals in groups that one solver may cross: without a jump of accelerations between them.
 
     If nodes carry no mass, a corner of the forces is such a jump.
     """
-    if not METHODS[solver.method].crosses_corners or dynamics.scene.arm.massless_nodes:
-        return [intervals[number : number + 1] for number in range(len(intervals))]
-    return join_intervals(intervals)
+    separate = not METHODS[solver.method].crosses_corners or dynamics.scene.arm.massless_nodes
+    for block in timeline.blocks():
+        if separate:
+            yield from (block[number : number + 1] for number in range(len(block)))
+        else:
+            yield from join_intervals(block)
 
 
 def _solve(

@@ -1,4 +1,4 @@
-"""Search for the number of segments from disk to disk at which the tip is as exact as requested, in metres.
+"""Search for the number of segments from disk to disk that gives the requested accuracy, in metres.
 
 The error of a mesh falls with the square of its number of segments, so two meshes give the continuous
 arm, with an error that falls with the fourth power (Richardson 1911, Phil. Trans. A 210). Meshes of m,

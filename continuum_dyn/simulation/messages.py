@@ -2,10 +2,16 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from statics.arc_length import Path
 from statics.equilibria import Critical, Equilibrium
 from statics.outcome import Outcome
 
+NOT_CARRIED = (
+    "nothing drives it: does the core carry its weight and loads? See youngs_modulus (Pa) and its section"
+)
+"""Advice on an arm that has no equilibrium though no drive acts."""
 MOST_NAMED = 6
 """Largest number of folds, branchings or jumps that a message names."""
 
@@ -22,12 +28,28 @@ def failure_message(
     if point.outcome is Outcome.UNSTABLE_EQUILIBRIUM:
         return f"unstable in {point.unstable_directions} directions {point.drive}"
     if point.outcome is Outcome.GEOMETRY_LIMIT:
-        meets = "holes meet: the cable's length from hole to hole reaches zero; try less tension"
+        meets = f"holes meet: a cable's length from hole to hole reaches zero; {_less(point)}"
         return (
             f"{point.drive} {meets}" if limit is None else f"{limit_message(limit)}, on the way {point.drive}"
         )
     lost = f"no equilibrium found {point.drive} in {point.iterations} iterations"
-    return f"{lost}; try a ramp from a lower tension"
+    return f"{lost}; {_slower(point)}"
+
+
+def _drives(point: Equilibrium) -> str:
+    """What acts on an arm at that point besides its weight and constant loads; empty if nothing does."""
+    named = {"tension": point.tension, "load factor": point.load_factor}
+    return " and ".join(name for name, values in named.items() if values is not None and np.any(values))
+
+
+def _less(point: Equilibrium) -> str:
+    drives = _drives(point)
+    return f"try less {drives}" if drives else NOT_CARRIED
+
+
+def _slower(point: Equilibrium) -> str:
+    drives = _drives(point)
+    return f"try a ramp that comes there in small steps from a lower {drives}" if drives else NOT_CARRIED
 
 
 def limit_message(limit: Equilibrium) -> str:

@@ -20,16 +20,16 @@ from statics.support.interruption import Interruption
 
 
 class Motion:
-    """Everything that the integration of a scenario's motion starts from.
+    """All that the integration of a scenario's motion needs.
 
-    ``samples`` (s) are the times that are requested, ``intervals`` the time between corners of the inputs.
+    ``samples`` (s) are the times that are requested, ``timeline`` the time, cut at corners of the inputs.
     Raises ``InputError`` for a study without motion.
     """
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario, self.study = scenario, scenario.require_motion("only a motion can be integrated")
         self.statics, self.dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
-        self.intervals = cut_into_intervals(scenario.profiles, self.study.duration)
+        self.timeline = cut_into_intervals(scenario.profiles, self.study.duration)
         self.samples = np.linspace(0.0, self.study.duration, self.study.samples)
 
     @cached_property
@@ -46,23 +46,23 @@ class Motion:
     @property
     def last_inputs(self) -> np.ndarray:
         """Inputs at the end, in the order of ``Scene.inputs``."""
-        return self.intervals[-1].inputs(np.array([self.study.duration]))[0]
+        return self.timeline.last.inputs(np.array([self.study.duration]))[0]
 
     def choose_method(self) -> Choice:
         """The method for ``method = "auto"``, with the reason."""
         exact = self.scenario.accuracy is not None
-        return choose(self.dynamics, self.start, self.intervals[0], self.study.duration, exact)
+        return choose(self.dynamics, self.start, self.timeline.first, self.study.duration, exact)
 
     def choose_solver(self) -> Solver:
-        """The scenario's solver, with the method and the step chosen if they are the program's to choose."""
+        """The scenario's solver, with the method and the step chosen if the scenario does not fix them."""
         solver = self.scenario.solver
         if solver.chooses_method:
             solver = replace(solver, method=self.choose_method().method)
-        return with_step(self.dynamics, solver, self.intervals, self.start)
+        return with_step(self.dynamics, solver, self.timeline, self.start)
 
     def warm_up(self, solver: Solver) -> None:
-        """Compile or load the kernels of the method, so that what follows is solving alone."""
-        warm_up(self.dynamics, solver, self.intervals[0])
+        """Compile or load the kernels of the method, so that later calls only solve."""
+        warm_up(self.dynamics, solver, self.timeline.first)
 
     def monitor(
         self,
@@ -81,7 +81,7 @@ class Motion:
 
     def integrate(self, solver: Solver, monitor: Monitor, gathered: Samples | None = None) -> Trajectory:
         """The motion by that solver, up to where the monitor stops it; samples join those ``gathered``."""
-        return integrate(self.dynamics, self.intervals, self.samples, self.start, solver, monitor, gathered)
+        return integrate(self.dynamics, self.timeline, self.samples, self.start, solver, monitor, gathered)
 
     def complete(self, solver: Solver, budget: Budget | None = None) -> Trajectory | None:
         """The motion by that solver, or None if it does not reach its end."""

@@ -1,4 +1,4 @@
-"""The place where a motion's tip should rest, and its distance from there."""
+"""Rest position of a motion's tip, and the distance of its last sample from there."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -43,27 +43,35 @@ def has_settled(gap: float, speed: float, within: float) -> bool:
     return gap < within and speed < within
 
 
-def unsettled_message(time: np.ndarray, gaps: np.ndarray, speeds: np.ndarray, within: float) -> str:
+def unsettled_message(
+    time: np.ndarray, gaps: np.ndarray, speeds: np.ndarray, within: float, slip_speed: float
+) -> str:
     """Message about a tip that has not settled: by how much, and when it would at the decay so far.
 
-    ``gaps`` (m) are its distances from the final equilibrium at the times (s), ``speeds`` (m/s) its speeds.
+    ``gaps`` (m) are its distances from the final equilibrium at the times (s), ``speeds`` (m/s) its speeds;
+    ``slip_speed`` (m/s) is the least of the cables that rub, infinite without such.
     """
-    parts, speed = [], speeds[-1]
-    if gaps[-1] >= within:
-        parts.append(f"the tip is {gaps[-1]:.2g} m from the final equilibrium")
-    if speed >= within:
-        parts.append(f"it moves at {speed:.2g} m/s" if parts else f"the tip moves at {speed:.2g} m/s")
-    limit = f"settled is below {within:.2g} m and m/s"
-    return f"{' and '.join(parts)}; {limit}{_settles_at(time, np.maximum(gaps, speeds), within)}"
+    limit, gap, speed = 1e3 * within, 1e3 * gaps[-1], 1e3 * speeds[-1]
+    away = f"{gap:.3g} mm from the final equilibrium (limit {limit:.3g} mm)"
+    moves = f"moves at {speed:.3g} mm/s (limit {limit:.3g} mm/s)"
+    if gap < limit:
+        text = f"the tip is {away}, but still {moves}"
+    else:
+        text = f"the tip is {away}, and {moves}" if speed >= limit else f"the tip {moves}, but is {away}"
+    creeps = ""
+    if gap < limit and np.isfinite(slip_speed):
+        creeps = f"; cables that stick creep, less with a smaller slip_speed than {slip_speed:g} m/s"
+    return f"{text}; {_settles_at(time, np.maximum(gaps, speeds), within)}{creeps}"
 
 
 def _settles_at(time: np.ndarray, sizes: np.ndarray, within: float) -> str:
     """The time at which what decays from the second third of a motion to the last would be small enough."""
     third = sizes.size // 3
     if third == 0:
-        return ""
+        return "more samples would tell when it settles"
     before, after = float(sizes[third : 2 * third].max()), float(sizes[-third:].max())
     if not after < 0.9 * before:
-        return ", and it does not decay"
+        return "it does not decay"
     rate = log(before / after) / float(time[-third] - time[third])
-    return f", which it would be after some {time[-1] + log(max(after / within, 1.0)) / rate:.2g} s"
+    settled = max(time[-1], time[-third] + log(max(after / within, 1.0)) / rate)
+    return f"at the decay so far it settles after some {settled:.2g} s"

@@ -7,7 +7,7 @@ import numpy as np
 
 from continuum_dyn.integrators import Monitor
 from continuum_dyn.passes.dynamics import Dynamics
-from continuum_dyn.scenario.intervals import Intervals, inputs_at, intervals_after
+from continuum_dyn.scenario.intervals import Timeline
 from continuum_dyn.scenario.solver import Solver
 from continuum_dyn.simulation.integration import integrate
 from continuum_dyn.simulation.motion import Motion
@@ -28,14 +28,14 @@ class Resumption:
     counters: Mapping[str, int]
     columns: Mapping[str, np.ndarray]
 
-    def states(self, dynamics: Dynamics, intervals: Intervals) -> tuple[np.ndarray, np.ndarray]:
+    def states(self, dynamics: Dynamics, timeline: Timeline) -> tuple[np.ndarray, np.ndarray]:
         """States (samples, size) and inputs (samples, inputs) of the samples.
 
         If a cable's displacement jumps just after the last of them, the energy that the jump adds to its
         stretch is added to the input work.
         """
         given = self.columns
-        inputs = inputs_at(intervals, given["time"])
+        inputs = timeline.inputs(given["time"])
         pairs = (("bend_angle", "elongation"), ("bend_angle_rate", "elongation_rate"))
         q, u = (np.stack([given[name] for name in names[: dynamics.dofs]], axis=-1) for names in pairs)
         size = (len(q), dynamics.size)
@@ -50,11 +50,11 @@ class Resumption:
     def integrate(self, motion: Motion, monitor: Monitor, gathered: Samples) -> Trajectory:
         """The whole motion, integrated from the last sample on; sampled as one that was not interrupted."""
         times, dynamics = self.columns["time"], motion.dynamics
-        states, inputs = self.states(dynamics, motion.intervals)
+        states, inputs = self.states(dynamics, motion.timeline)
         kept = np.isin(times, motion.samples)
         gathered.add(times[kept], states[kept], inputs[kept], self.columns["step_size"][kept])
-        rest = intervals_after(motion.intervals, float(times[-1]))
-        if not rest:
+        rest = motion.timeline.after(float(times[-1]))
+        if rest.start >= rest.end:
             return gathered.trajectory(dict(self.counters))
         trajectory = integrate(dynamics, rest, motion.samples, states[-1], self.solver, monitor, gathered)
         counters = {name: n + self.counters.get(name, 0) for name, n in trajectory.counters.items()}

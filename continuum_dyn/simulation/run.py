@@ -53,12 +53,12 @@ class Run:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Words about what is legal but odd, a sentence or two for each."""
+        """Warnings about valid but unusual inputs or results, one or two sentences each."""
         return warnings_of(self)
 
     @property
     def bending_strain(self) -> float | None:
-        """Largest bending strain of a round core; None where its radius is not known."""
+        """Largest bending strain of a round core; None if its radius is not known."""
         return bending_strain(self)
 
     @property
@@ -100,8 +100,15 @@ class Run:
             return replace(run, outcome=Outcome.SETTLED)
         way = zip(trajectory.disk_x[:, -1], trajectory.disk_y[:, -1], strict=True)
         gaps = np.array([tip_gap((x, y, 0.0), tips) for x, y in way])
-        message = unsettled_message(trajectory.time, gaps, speeds, within)
+        message = unsettled_message(trajectory.time, gaps, speeds, within, _slip_speed(self.scenario))
         return replace(run, outcome=Outcome.NOT_SETTLED, message=message)
+
+
+def _slip_speed(scenario: Scenario) -> float:
+    """Least slip speed of the cables that rub, m/s; infinite without any."""
+    scene = scenario.scene
+    pairs = zip(scene.arm.cables, scene.cable_kinds, strict=False)
+    return min((cable.slip_speed for cable, kind in pairs if kind.rubs), default=np.inf)
 
 
 def interrupted_early(scenario: Scenario) -> Run:

@@ -1,4 +1,4 @@
-"""A motion's samples on their way from the solver to its trajectory, passed in blocks to a listener."""
+"""Samples of a motion, from the solver to the trajectory, passed in blocks to a listener."""
 
 import time
 from collections.abc import Callable

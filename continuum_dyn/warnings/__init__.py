@@ -1,1 +1,1 @@
-"""A scenario and its run come in; words about what is legal but odd go out, one sentence or two for each."""
+"""A scenario and its run come in; warnings about valid but unusual values go out."""

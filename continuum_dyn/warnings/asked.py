@@ -1,9 +1,12 @@
-"""Requests that come to nothing: quantities without an effect, drives without a change, studies in vain."""
+"""Warnings about requests without effect: unused quantities, drives without a change, studies in vain."""
 
 from collections.abc import Iterator
+from math import inf
 from typing import Any
 
-from continuum_dyn.scenario.profiles import Piecewise
+import numpy as np
+
+from continuum_dyn.scenario.profiles import Profile, change_times
 from continuum_dyn.scenario.scenario import Scenario, dissipated_by
 from statics.arm import RONE2012, Arm
 
@@ -24,8 +27,10 @@ def unused_numbers(scenario: Scenario) -> Iterator[str]:
     for name, effects in USED_BY.items():
         preset = getattr(arm, name) == RONE2012.get(name)
         of_core = name == "area" and arm.core_density is not None
-        if arm.knows(name) and not (preset or of_core or any(map(scene.has, effects))):
-            would = " and ".join(effects)
+        each = getattr(arm.each, name, None)
+        is_zero = not np.any(getattr(arm, name) if each is None else each)
+        if arm.knows(name) and not is_zero and not (preset or of_core or any(map(scene.has, effects))):
+            would = " or ".join(filter(None, (", ".join(effects[:-1]), effects[-1])))
             yield f"[arm] {name} is given, and no effect uses it: {would} would. Add one, or leave it out."
 
 
@@ -44,13 +49,19 @@ def drives_without_a_change(scenario: Scenario) -> Iterator[str]:
     study = scenario.study.motion
     if study is None:
         return
-    drives = _named_drives(scenario)
-    for name, profile in drives:
-        late = [piece[0] for piece in profile.pieces()[1:] if piece[0] >= study.duration]
-        if late:
-            end = study.duration
-            yield f"{name} changes at {late[0]:g} s, and the run ends at {end:g} s: none of it shows."
-    if study.settles and drives and not any(_changes(profile) for _, profile in drives):
+    drives = [(name, change_times(profile)) for name, profile in _named_drives(scenario)]
+    for name, changes in drives:
+        if changes is not None and changes[0] >= study.duration:
+            yield (
+                f"{name} changes at {changes[0]:g} s, and the run ends at {study.duration:g} s: none of it "
+                "shows. Make the [study] longer, or the change earlier."
+            )
+        elif changes is not None and study.duration < changes[1] < inf:
+            yield (
+                f"{name} changes until {changes[1]:g} s, and the run ends at {study.duration:g} s: the rest "
+                "does not show."
+            )
+    if study.settles and drives and not any(changes for _, changes in drives):
         yield 'a step response to constant inputs: nothing steps. Give a tension with profile = "step".'
     if study.settles and not dissipated_by(scenario.scene):
         yield (
@@ -59,7 +70,7 @@ def drives_without_a_change(scenario: Scenario) -> Iterator[str]:
         )
 
 
-def _named_drives(scenario: Scenario) -> list[tuple[str, Piecewise]]:
+def _named_drives(scenario: Scenario) -> list[tuple[str, Profile]]:
     cables = (f"the drive of cable '{cable.name}'" for cable in scenario.scene.arm.cables)
     loads = (f"load factor {number}" for number in range(1, len(scenario.load_factors) + 1))
     base = (f"[base] {name}" for name in ("x", "y", "angle"))
@@ -68,11 +79,3 @@ def _named_drives(scenario: Scenario) -> list[tuple[str, Piecewise]]:
     for names, given in zip((cables, loads, base), profiles, strict=True):
         named += zip(names, given, strict=False)
     return named
-
-
-def _changes(profile: Piecewise) -> bool:
-    """Whether a profile has another value at some time."""
-    return any(
-        value != profile.initial or slope != 0.0 or (amplitude != 0.0 and frequency != 0.0)
-        for _, value, slope, amplitude, frequency, _ in profile.pieces()
-    )

@@ -1,4 +1,4 @@
-"""All warnings of a run, in the order in which they are told."""
+"""All warnings of a run, in the order of printing."""
 
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
@@ -21,18 +21,18 @@ BEFORE: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     asked.core_counted_twice,
     asked.drives_without_a_change,
 )
-"""Checks of what was asked."""
+"""Checks of the scenario."""
 AFTER: "tuple[Callable[[Run], Iterator[str]], ...]" = (
     results.strained,
     results.coarser_than_the_travel,
     results.samples_too_far_apart,
     results.explicit_on_a_stiff_arm,
 )
-"""Checks of what was found."""
+"""Checks of the results."""
 
 
 def warnings_of(run: "Run") -> tuple[str, ...]:
-    """Warnings of all that is odd about a run and its scenario, a sentence or two for each."""
+    """All warnings about a run and its scenario, one or two sentences each."""
     with np.errstate(all="ignore"):
         before = [text for check in BEFORE for text in check(run.scenario)]
         return (*before, *(text for check in AFTER for text in check(run)))

@@ -1,4 +1,4 @@
-"""Results that should be looked at twice: strains, tolerances above the travel, samples too far apart."""
+"""Warnings about results: strains, tolerances above the travel, samples too far apart."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -17,15 +17,12 @@ if TYPE_CHECKING:
 
 LARGEST_STRAIN = 0.02
 """Bending strain above which few cores stay elastic."""
-UNSEEN = 0.05
-"""Largest part of the travel by which a coordinate may stray between samples from what its rates tell."""
-
-OFTEN = 8
-"""Times between samples with such a departure that are more than what follows a jump."""
+STILL = 1e-9
+"""Travel over the arm's length below which nothing moves: rounding leaves some."""
 
 
 def bending_strain(run: "Run") -> float | None:
-    """Largest bending strain of a round core in all that was computed; None where its radius is not known."""
+    """Largest bending strain of a round core in all that was computed; None if its radius is not known."""
     arm = run.scenario.scene.arm
     radius = core_radius(arm)
     curvatures = [point.curvature[None] for point in run.equilibria if point.found]
@@ -50,9 +47,10 @@ def strained(run: "Run") -> Iterator[str]:
 
 def coarser_than_the_travel(run: "Run") -> Iterator[str]:
     """Warn of tolerances that are larger than all that moves."""
-    if run.trajectory is None or run.trajectory.travel == 0.0:
+    scenario = run.scenario
+    if run.trajectory is None or run.trajectory.travel < STILL * scenario.scene.arm.total_length:
         return
-    travel, scenario = run.trajectory.travel, run.scenario
+    travel = run.trajectory.travel
     named = []
     if scenario.study.settles:
         named.append(("settled_within", scenario.settled_within))
@@ -60,10 +58,10 @@ def coarser_than_the_travel(run: "Run") -> Iterator[str]:
         named.append(("[accuracy] tip", scenario.accuracy.tip))
     for name, distance in named:
         if distance > travel:
+            in_mm = f" {distance:g} mm are {distance / 1e3:g} m." if distance / 1e3 < travel else ""
             yield (
-                f"{name} = {distance:.3g} m is above all that the arm moves, {travel:.3g} m: it says "
-                "nothing. "
-                f"{distance:g} mm are {distance / 1e3:g} m."
+                f"{name} = {distance:.3g} m is above all that the arm moves, {travel:.3g} m: it says nothing."
+                f"{in_mm} Give less than that."
             )
 
 
@@ -80,7 +78,7 @@ def explicit_on_a_stiff_arm(run: "Run") -> Iterator[str]:
     if run.trajectory is None or study is None or solver.chooses_method or METHODS[solver.method].implicit:
         return
     dynamics, start = Dynamics(run.scenario.scene), run.equilibria[0].coordinates
-    interval = cut_into_intervals(run.scenario.profiles, study.duration)[0]
+    interval = cut_into_intervals(run.scenario.profiles, study.duration).first
     better = choose(dynamics, dynamics.state(start), interval, study.duration)
     if better.method == "chain":
         yield f'method "{solver.method}" is explicit, and {better.reason}. Try method = "chain".'

@@ -1,4 +1,4 @@
-"""Numbers that read as if they were meant in another unit."""
+"""Warnings about numbers that may be in another unit."""
 
 from collections.abc import Iterator
 from itertools import chain

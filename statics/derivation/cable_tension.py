@@ -1,4 +1,4 @@
-"""The tension along a cable that rubs at its holes, or that is driven by its length.
+"""Tension along a cable with friction at its holes, or driven by its length.
 
 Such a tension couples all segments that the cable passes. With Lambda_i the cable's length beyond the near
 hole of span i, Lambda_1 all of it, the drive's tension is
@@ -10,7 +10,7 @@ and at a hole that turns it by beta (Euler 1769) it changes to
     T_i = T_{i-1} exp(-mu |beta| tanh s),   s = -Lambda_i' / slip speed
 
 in motion; at rest s = (Lambda_i before - Lambda_i) / slip length, where "before" is the equilibrium that the
-arm comes from. tanh stands for the sign of the slip: as it passes through zero the cable sticks, and creeps.
+arm comes from. tanh approximates the sign of the slip: near zero the cable sticks, that is, it creeps.
 """
 
 from typing import Any
@@ -92,18 +92,19 @@ def _name_tension(trace: Trace, cable: CableSymbols, known: dict[Any, Any], move
         carried |= {f"tension_{c}": (drive_tension(cable), symbol(f"tension_{c}"))}
         carried |= {f"drive_slope_{c}": (_drive_slope(cable), (1 - cable.passes) * slope)}
     if not kind.rubs:
-        trace.always_name(f"place_slope_{c}", slope)
+        trace.always_name(f"place_slope_{c}", cable.passes * slope)
         return carried
     before, angle_before = symbol(f"tension_before_{c}"), symbol(f"angle_before_{c}")
     angle = trace.name(f"cable_angle_{c}", cable.angle.xreplace(known))
-    turn = trace.name(f"cable_turn_{c}", symbol(f"friction_{c}") * sp.Abs(angle - angle_before))
+    turned = sp.Abs(angle - angle_before)
+    turn = trace.name(f"cable_turn_{c}", cable.passes * symbol(f"friction_{c}") * turned)
     slip, slip_by_length, slip_by_rate = _slip(c, moves)
     sign = trace.name(f"slip_sign_{c}", sp.tanh(slip))
     factor = trace.always_name(f"hole_factor_{c}", sp.exp(-turn * sign))
     tension = trace.name(f"tension_here_{c}", before * factor)
     trace.name(f"tension_lost_{c}", symbol(f"tension_{c}") - tension)
     by_slip = trace.name(f"slip_slope_{c}", -turn * tension * (1 - sign**2))
-    trace.always_name(f"place_slope_{c}", factor * slope + by_slip * slip_by_length)
+    trace.always_name(f"place_slope_{c}", cable.passes * factor * slope + by_slip * slip_by_length)
     trace.always_name(f"rate_slope_{c}", by_slip * slip_by_rate)
     far = trace.name(f"far_cable_angle_{c}", cable.far_angle.xreplace(known))
     passes = cable.passes

@@ -1,6 +1,6 @@
-"""Planar kinematics: components of poses and wrenches, rotations, and how a pose follows from another.
+"""Planar kinematics: components of poses and wrenches, rotations, and transfer from pose to pose.
 
-A spatial arm would need these same few things with other components; nothing else here knows the plane.
+A spatial arm would need the same functions with other components; no other module depends on the plane.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ TWIST = ("velocity_x", "velocity_y", "angular_velocity")
 ACCELERATION = ("acceleration_x", "acceleration_y", "angular_acceleration")
 MOMENTUM = ("momentum_x", "momentum_y", "angular_momentum")
 WRENCH = ("force_x", "force_y", "torque")
-"""Components of a pose, of its rates, and of what is dual to them: two along the base axes, one about z."""
+"""Components of a pose, twist or wrench: two along the base axes, one about z."""
 
 AXES, ANGLE = range(2), 2
 """Rows of the position in a pose, and the row of the angle; the same in a twist or wrench."""
@@ -24,7 +24,7 @@ NEAR_ROTATION = symbol("cosine"), symbol("sine")
 """Cosine and sine of the near disk's angle."""
 
 STILL = sp.Float(1e-60)
-"""Speed (m/s, rad/s) so small that, added as a square, it changes no bit of one beyond 1e-50."""
+"""Speed (m/s, rad/s) whose square, added to that of a speed above 1e-50, changes no bit."""
 
 
 def components(prefix: str, names: Sequence[str]) -> sp.Matrix:

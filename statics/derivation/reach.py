@@ -1,7 +1,7 @@
 """Reaches of a segment: from its near disk to its far end, and to the points that carry its mass.
 
-The reach is a chord at half the angle of its end (Rone 2012, Eq. 11): in axes along it one number, and so its
-derivatives stay short.
+The reach is a chord at half the angle of its end (Rone 2012, Eq. 11). In axes along the chord it is a single
+number, so its derivatives stay short.
 """
 
 from dataclasses import dataclass

@@ -5,7 +5,7 @@ follow from them. With h = phi / 2 its far end is a chord at half the angle (Ron
 
     x = L sigma_0(h) cos h,   y = L sigma_0(h) sin h,   theta = phi
 
-A point of its core at the fraction s of its length is where the segment would end with s phi and s L.
+The point of its core at the fraction s of its length is the end of a segment with s phi and s L.
 """
 
 from collections.abc import Sequence
@@ -126,7 +126,7 @@ class DrivenLoad(NamedTuple):
 
 
 class SpanSymbols:
-    """The core from one disk to the next, where it has several segments: the poses of its two ends.
+    """The core from one disk to the next, if it has several segments: the poses of its two ends.
 
     The span ends at the disk whose pose is x, y, theta, and starts at the one whose names begin with
     ``span_``; any other glossary name is a parameter of it.

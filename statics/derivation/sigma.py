@@ -5,7 +5,7 @@ sigma_0 is sin(x)/x, sigma_{-1} is cos(x), and each is the derivative of the one
     sigma_n'(x) = -x sigma_{n+1}(x)                                            DLMF 10.51.3
     x^2 sigma_{n+1}(x) = (2n + 1) sigma_n(x) - sigma_{n-1}(x)                  DLMF 10.51.1
 
-Nothing is divided by the curvature, so a straight arm is a point like any other.
+No formula divides by the curvature, so the straight arm needs no special case.
 """
 
 from collections.abc import Sequence

@@ -12,7 +12,7 @@ from statics.support.checked import STRICT
 
 @dataclass(frozen=True, config=STRICT)
 class Cables:
-    """F = -tau along the hole-to-hole length l, for each of the arm's cables, up to its anchor."""
+    """F = -tau along the hole-to-hole length l, for each of the arm's cables, from start to anchor."""
 
     name: ClassVar[str] = "cables"
     site: ClassVar[Site] = "span"
@@ -37,20 +37,21 @@ Poses = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def cable_ways(cable: Cable, poses: Poses) -> tuple[np.ndarray, np.ndarray]:
-    """A cable's straight ways from hole to hole, from the base to its anchor, shape (..., anchor, 2), m.
+    """A cable's straight ways from hole to hole, from its start to its anchor, shape (..., ways, 2), m.
 
     Returns the holes' places in base and disks as well, as seen from their centres, shape
-    (..., anchor + 1, 2), m; all in base axes. Rone 2012, Eq. 22.
+    (..., ways + 1, 2), m; all in base axes. Rone 2012, Eq. 22.
     """
     disks = poses[0].shape[-1] - 1
-    x, y, theta = (values[..., : (cable.anchor or disks) + 1] for values in poses)
-    offsets = cable.holes(disks)[: theta.shape[-1]]
+    felt = slice(cable.start or 0, (cable.anchor or disks) + 1)
+    x, y, theta = (values[..., felt] for values in poses)
+    offsets = cable.holes(disks)[felt]
     r_h = np.stack([-offsets * np.sin(theta), offsets * np.cos(theta)], axis=-1)
     return np.diff(np.stack([x, y], axis=-1) + r_h, axis=-2), r_h
 
 
 def cable_lengths(cable: Cable, poses: Poses) -> np.ndarray:
-    """A cable's lengths from hole to hole, shape (..., anchor), m. Rone 2012, Eq. 23."""
+    """A cable's lengths from hole to hole, start to anchor, shape (..., ways), m. Rone 2012, Eq. 23."""
     return np.linalg.norm(cable_ways(cable, poses)[0], axis=-1)
 
 
@@ -66,13 +67,13 @@ def disk_loads(
     """
     of_disks = zip(arm.base_pose, (disk_x, disk_y, disk_theta), strict=True)
     x, y, theta = (np.append(base, values) for base, values in of_disks)
-    poses, force = (x, y, theta), np.zeros((arm.disks, 2))
-    moment = np.zeros(arm.disks)
+    poses = x, y, theta
+    force, moment = np.zeros((arm.disks + 1, 2)), np.zeros(arm.disks + 1)  # the base's are left out
     for cable, tau in zip(arm.cables, tension, strict=True):
         p_h, r_h = cable_ways(cable, poses)
         pull = tau * p_h / np.linalg.norm(p_h, axis=1, keepdims=True)
-        on_disk = -pull
-        on_disk[:-1] += pull[1:]
-        force[: len(pull)] += on_disk
-        moment[: len(pull)] += r_h[1:, 0] * on_disk[:, 1] - r_h[1:, 1] * on_disk[:, 0]
-    return force, moment
+        at_holes = np.diff(pull, axis=0, prepend=0.0, append=0.0)
+        felt = slice(cable.start or 0, (cable.start or 0) + len(r_h))
+        force[felt] += at_holes
+        moment[felt] += r_h[:, 0] * at_holes[:, 1] - r_h[:, 1] * at_holes[:, 0]
+    return force[1:], moment[1:]

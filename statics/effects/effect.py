@@ -39,7 +39,7 @@ class Effect(Protocol):
     source: ClassVar[str]
 
     def pairs(self, at: Any) -> list[Pair]:
-        """The pairs at one such site, by arithmetic on the symbols handed in.
+        """The pairs at one such site, by arithmetic on the given symbols.
 
         They never depend on the values of parameters, which reach the kernel by ``columns``: kernels are kept
         for scenes of the same effects, whatever their numbers.

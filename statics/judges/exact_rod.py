@@ -62,7 +62,7 @@ POINTS, UP_TO_POINTS, TO_THE_END = _gauss(32)
 
 
 class RodError(ContinuumError):
-    """No stable equilibrium of the exact rod was found under the full loads."""
+    """No stable equilibrium of the exact rod is found under the full loads."""
 
 
 @dataclass(frozen=True)
@@ -113,8 +113,8 @@ def exact_rod(scene: Scene, tension: object = None) -> RodShape:
     """The exact rod of this scene at rest under these tensions, shape (cables,), N.
 
     A cantilever from the arm's base, followed from no load to the full loads as long as it is
-    stable. Effects that exist in motion only play no part. Raises ``InputError`` for tensions that do
-    not fit and for what the rod does not know, ``RodError`` where it buckles, snaps or comes to
+    stable. Effects that exist in motion only are ignored. Raises ``InputError`` for tensions that do
+    not fit and for effects that the rod does not have, ``RodError`` if it buckles, snaps or comes to
     the end of its geometry before the full loads are on.
     """
     values = scene.check_tension(tension)[: scene.cables]
@@ -148,6 +148,8 @@ def _check(scene: Scene) -> None:
         raise InputError("the exact rod does not know loads that change in time.")
     if any(kind.coupled for kind in scene.cable_kinds):
         raise InputError("the exact rod knows cables of given tension, without friction.")
+    if any(cable.start for cable in scene.arm.cables[: scene.cables]):
+        raise InputError("the exact rod knows cables that start at the base.")
     if scene.has_followers:
         raise InputError("the exact rod does not know loads that turn with their disk.")
     if scene.arm.payloads:
@@ -182,7 +184,7 @@ def _rod(scene: Scene, tension: np.ndarray) -> _Rod:
 
 
 def _given(number: float | None) -> float:
-    """A number of the arm, which the scene has checked to be there."""
+    """A number of the arm, which the scene guarantees."""
     assert number is not None
     return number
 
@@ -209,7 +211,7 @@ def _core_weight(scene: Scene) -> np.ndarray:
 def _follow_loads(rod: _Rod) -> np.ndarray:
     """Internal force and moment at the start of each piece under the full loads, shape (nodes, 3).
 
-    From the unloaded rod, whose internal loads are zero, by steps that halve where they fail.
+    From the unloaded rod, whose internal loads are zero, by steps that halve if they fail.
     """
     loads = np.zeros((len(rod.dead_load) * rod.parts, 3))
     reached, step = 0.0, 1.0
@@ -231,7 +233,7 @@ def _balanced(rod: _Rod, start: np.ndarray) -> np.ndarray:
     """Internal loads that balance every node, by Newton's method from ``start``.
 
     A step more than half as long as the one before it ends the search, lest it finds another branch
-    (Deuflhard 2011, sec. 5.1). Raises ``RodError`` with the reason where they are not found near ``start``.
+    (Deuflhard 2011, sec. 5.1). Raises ``RodError`` with the reason if they are not found near ``start``.
     """
     loads, longest = start, np.inf
     for _ in range(MAX_ITERATIONS):

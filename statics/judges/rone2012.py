@@ -99,7 +99,7 @@ class PrintedArm:
         """The solution reached from the straight arm under one tension for each cable, N.
 
         Powell's hybrid method, a trust-region dogleg like the paper's, on k L0 and L / L0, for which the
-        equations have one unit, N m. Raises ``PrintedError`` where more than the paper's 1e-9 is left.
+        equations have one unit, N m. Raises ``PrintedError`` if more than the paper's 1e-9 is left.
         """
         values, L0 = self.scene.check_tension(tension), self.scene.arm.rest_length
         unit = np.tile([1.0 / L0, L0], self.scene.arm.segments)

@@ -23,10 +23,10 @@ from statics.kernels.machine_code import MachineCode, compile_text, machine_name
 from statics.support.stages import stage
 
 SHARED = (Path(__file__).parent, Path(__file__).parent.parent / "passes")
-"""Folders of what compiled functions everywhere may call."""
+"""Folders whose functions any compiled function may call."""
 FORMATS = {FLOAT: "d", INT: "q", BOOL: "?", "ptr": "q"}
 ACCEPTED = {FLOAT: Real, INT: Integral, BOOL: bool}
-"""What a parameter that is annotated as a number takes."""
+"""Types accepted by a parameter annotated as a number."""
 
 Result = TypeVar("Result")
 
@@ -148,7 +148,7 @@ class _Code:
         self.results = _layout(found)
 
     def call(self, given: list[Any]) -> Any:
-        """Run the code with these cells of arguments; returns what the function does."""
+        """Run the code with these cells of arguments; returns the result of the function."""
         try:
             arguments = self.pack(*given)
         except struct.error as error:

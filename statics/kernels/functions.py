@@ -57,7 +57,7 @@ INTEGER_COMPARISONS = {ast.Eq: "icmp eq", ast.NotEq: "icmp ne"} | {
     comparison: f"icmp s{how[1:]}" for comparison, how in COMPARISONS.items()
 }
 NUMBERS = {"abs": 1, "float": 1, "isfinite": 1} | dict.fromkeys(INTRINSICS, 1) | LIBRARY
-"""How many numbers a function takes, by its name, and gives a float or a bool."""
+"""Number of arguments of each function that takes numbers and returns a float or a bool."""
 BUILTINS = {function.__name__: function for function in (min, max, abs, int, float, len, range)}
 FUNCTIONS = BUILTINS | {name: getattr(math, name) for name in ("isfinite", *INTRINSICS, *LIBRARY)}
 LARGEST_INTEGER = 2**63 - 1
@@ -215,7 +215,7 @@ class _Code:
         self.ended = True
 
     def fork(self, condition: str, first: str, second: str) -> None:
-        """End a block one way or the other."""
+        """End a block with one of two branches."""
         self.emit(f"br i1 {condition}, label %{first}, label %{second}")
         self.reached |= {first, second}
         self.ended = True
@@ -306,7 +306,7 @@ class _Code:
         self.rest_of_loop(node.body)
 
     def rest_of_loop(self, body: Sequence[ast.stmt]) -> None:
-        """Lower a loop's body and its way back."""
+        """Lower a loop's body and its jump back."""
         again, after = self.loops[-1]
         self.statements(body)
         self.go(again)
@@ -527,7 +527,7 @@ class _Code:
         return self.new(FLOAT, f"{OPERATIONS[operation]} double {first}, {second}")
 
     def floored(self, first: str, second: str, remainder: bool) -> str:
-        """Quotient of integers rounded down, or what it leaves, which has the divisor's sign."""
+        """Quotient of integers rounded down, or the remainder, which has the divisor's sign."""
         left = self.assign(f"srem i64 {first}, {second}")
         unlike = self.assign(f"icmp slt i64 {self.assign(f'xor i64 {left}, {second}')}, 0")
         uneven = self.assign(f"icmp ne i64 {left}, 0")

@@ -25,7 +25,7 @@ ADVICE = f"Name another folder with the environment variable {FOLDER}, or try --
 def kernel_folder() -> Path:
     """Folder of the generated kernels: ``CONTINUUM_DYN_CACHE``, or the user's own cache folder.
 
-    Raises ``KernelCacheError`` where others could write to it.
+    Raises ``KernelCacheError`` if others could write to it.
     """
     named = os.environ.get(FOLDER)
     folder = Path(named) if named else user_cache_path("continuum-dyn") / "kernels"
@@ -54,7 +54,7 @@ def _whose(status: os.stat_result, folder: Path) -> str:
 def no_cache() -> Iterator[None]:
     """Within, kernels are kept in a folder of their own, which is removed at the end.
 
-    Raises ``KernelCacheError`` where no such folder can be made.
+    Raises ``KernelCacheError`` if no such folder can be made.
     """
     before = os.environ.get(FOLDER)
     try:

@@ -27,7 +27,7 @@ Kind = str | ArrayKind | TupleKind
 
 
 def cells(kind: Kind | None) -> list[str]:
-    """LLVM's types of what a value is made of: an array of its address and its shape."""
+    """LLVM types of the parts of a value: an array consists of its address and its shape."""
     match kind:
         case None:
             return []

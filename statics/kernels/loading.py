@@ -41,7 +41,7 @@ class Family:
 
     ``derive`` names the function of a structure that returns its forces and steps, "module:function"; it is
     imported when a text has to be made. ``passes`` is a named tuple of integers: addresses of the passes,
-    zero where the scene has none, and sizes of the arrays.
+    zero if the scene has none, and sizes of the arrays.
     """
 
     name: str

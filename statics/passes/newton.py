@@ -1,8 +1,8 @@
 """Newton's method on the chain that ends in a stable equilibrium.
 
 The potential energy must fall (Armijo); pivot blocks are made positive as they come, so that every step
-descends. At a saddle the search stops, so that it can be reported, and goes on along the direction of
-negative curvature that the elimination knows. A trial beyond a geometric limit counts as infinitely high.
+descends. At a saddle the search stops, so that it can be reported, and continues along the direction of
+negative curvature from the elimination. A trial beyond a geometric limit counts as infinitely high.
 
 Arguments travel in groups:
 
@@ -41,6 +41,7 @@ from statics.passes.search import (
     add_scaled,
     clear,
     copy,
+    is_balanced,
     largest,
     measure,
     pose_pass,
@@ -50,10 +51,10 @@ Arm = tuple[np.ndarray, np.ndarray, np.ndarray]
 Work = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 ROUNDING = 1e-11
-"""Smallest predicted fall of the potential, over its scale, that can be seen in it."""
+"""Smallest predicted fall of the potential, over its scale, above rounding."""
 FAR_FROM_REST = 1e-6
-"""Newton step (rad, or elongation over L0) above which one from where all forces balance goes elsewhere: the
-matrix is singular there."""
+"""Largest Newton step (rad, or elongation over L0) at balanced forces; a larger one means that the matrix is
+singular."""
 
 
 @compiled
@@ -88,7 +89,7 @@ def descend(passes: RestPasses, arm: Arm, work: Work) -> int:
 
 @compiled
 def substitute(passes: RestPasses, work: Work) -> None:
-    """Set ``change`` from what the elimination left."""
+    """Set ``change`` from the result of the elimination."""
     chain, _, descent, change, _, _, scalars = work
     run(passes.substitute, change.shape[0], scalars, chain, descent, change)
 
@@ -171,7 +172,7 @@ def shorten(
 
 @compiled
 def lengthen(passes: RestPasses, q: np.ndarray, factor: float, longest: float, arm: Arm, work: Work) -> None:
-    """Double an accepted step while that lowers the potential: an indefinite matrix says little of length."""
+    """Double an accepted step while that lowers the potential: an indefinite matrix predicts no length."""
     scalars = work[6]
     potential, clearance = scalars[POTENTIAL], scalars[CLEARANCE]
     while 2.0 * factor <= longest:
@@ -193,7 +194,7 @@ def leave_saddle(
 ) -> bool:
     """Move ``q`` off an unstable equilibrium, down along a direction of negative curvature.
 
-    Returns whether there is a way down within the geometric limits.
+    Returns whether the energy can fall within the geometric limits.
     """
     n, dofs = q.shape
     chain, pivots, scalars = (
@@ -234,7 +235,7 @@ def find_stable(
     """Move ``q``, shape (n, dofs), to an equilibrium; ``unit`` is the length elongations compare with.
 
     Returns the outcome (STABLE, UNSTABLE, LIMIT, NOT_FOUND) and the iterations (at most ``most``). From an
-    unstable one ``leave_saddle`` knows the way on.
+    unstable one ``leave_saddle`` continues.
     """
     n, dofs = q.shape
     chain, pivots, scalars = (
@@ -293,20 +294,23 @@ def examine_stability(
     inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
+    rest_length: float,
     pose: np.ndarray,
-) -> tuple[float, float, float, int]:
-    """Poses of the disks into ``pose``, shape (n, 3).
+) -> tuple[float, float, float, int, bool]:
+    """Put the disks' poses into ``pose``, shape (n, 3).
 
-    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and the number of negative
-    eigenvalues of the potential energy's Hessian: at an equilibrium, its unstable directions.
+    Returns elastic energy, gravity energy (J), the largest residual (N or N m), the number of negative
+    eigenvalues of the potential energy's Hessian (at an equilibrium, its unstable directions), and whether
+    the forces balance.
     """
     n, dofs = q.shape
     chain, scalars, residual = np.empty((n, passes.chain_columns)), np.empty(SCALARS), np.empty((n, dofs))
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     run(passes.residual, n, scalars, disks, chain, residual)
+    balanced = is_balanced(passes, disks, chain, residual, rest_length)
     negative = solve_exactly(passes, segments, disks, chain, residual, np.empty((n, dofs)))
     run(passes.observe, n, scalars, q, inputs, segments, disks, chain, pose)
-    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative
+    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative, balanced
 
 
 @compiled

@@ -1,9 +1,9 @@
 """A search for equilibria under loads without a potential.
 
-Where no energy falls, the arm is released instead: it creeps as in a viscous bath, D dq/dt = -r(q), in
-implicit steps that lengthen as the residual r falls, and so end as Newton's (pseudo-transient continuation,
-Kelley and Keyes 1998). It leaves what is unstable in such a bath, and knows of no other stability. The
-matrix need not be exact: then the last steps converge linearly.
+Without an energy to minimize, the arm is released in a viscous fluid, D dq/dt = -r(q). The implicit steps
+grow as the residual r falls, so the last ones are Newton steps (pseudo-transient continuation, Kelley and
+Keyes 1998). It leaves equilibria that are unstable in such a fluid, and cannot judge any other stability. If
+the matrix is not exact, the last steps converge linearly.
 """
 
 import math
@@ -34,6 +34,7 @@ from statics.passes.search import (
     UNKNOWN,
     add_scaled,
     copy,
+    is_balanced,
     largest,
     measure,
     pose_pass,
@@ -156,20 +157,22 @@ def examine_balance(
     inputs: np.ndarray,
     segments: np.ndarray,
     disks: np.ndarray,
+    rest_length: float,
     pose: np.ndarray,
-) -> tuple[float, float, float, int]:
-    """Poses of the disks into ``pose``, shape (n, 3).
+) -> tuple[float, float, float, int, bool]:
+    """Put the disks' poses into ``pose``, shape (n, 3).
 
-    Returns elastic energy, gravity energy (J), the largest residual (N or N m), and the number of unstable
-    directions, or UNKNOWN: the signs of an unsymmetric matrix say nothing of oscillations that grow. Friction
-    only takes energy: with the tensions held as they are the rest has a potential, and where that is at a
-    minimum nothing grows.
+    Returns elastic energy, gravity energy (J), the largest residual (N or N m), the number of unstable
+    directions, or UNKNOWN, and whether the forces balance. The signs of an unsymmetric matrix do not show
+    oscillations that grow. Friction only dissipates energy: at fixed tensions the other loads have a
+    potential, and at its minimum nothing grows.
     """
     n, dofs = q.shape
     chain, scalars = np.empty((n, passes.chain_columns)), np.empty(SCALARS)
     residual, descent = np.empty((n, dofs)), np.empty((n, dofs))
     pose_pass(passes, q, inputs, segments, disks, chain, scalars)
     run(passes.residual, n, scalars, disks, chain, residual)
+    balanced = is_balanced(passes, disks, chain, residual, rest_length)
     negative = UNKNOWN
     if passes.eliminate_held != 0:
         pivots = np.empty((n, passes.pivot_columns))
@@ -177,4 +180,4 @@ def examine_balance(
         run(passes.eliminate_held, n, scalars, segments, disks, chain, residual, descent, pivots)
         negative = int(scalars[NEGATIVE_PIVOTS])
     run(passes.observe, n, scalars, q, inputs, segments, disks, chain, pose)
-    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative
+    return scalars[ELASTIC_ENERGY], scalars[GRAVITY_ENERGY], largest(residual), negative, balanced

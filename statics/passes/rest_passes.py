@@ -6,7 +6,7 @@ from statics.kernels.loading import Family
 
 
 class RestPasses(NamedTuple):
-    """Addresses of the passes, zero where the scene has none, and sizes of the arrays.
+    """Addresses of the passes, zero if the scene has none, and sizes of the arrays.
 
     ``lengths`` and ``beyond`` measure coupled cables; ``eliminate_held`` keeps their tensions as they are;
     ``sizes`` are those of the forces that meet in a residual.

@@ -1,4 +1,4 @@
-"""Common parts of both searches for an equilibrium: outcomes, limits, steps in unlike units."""
+"""Common parts of both searches for an equilibrium: outcomes, limits, steps in mixed units."""
 
 import math
 
@@ -10,14 +10,14 @@ from statics.kernels.slots import SCALARS
 from statics.passes.rest_passes import RestPasses
 
 STABLE, UNSTABLE, LIMIT, NOT_FOUND, BALANCED = 0, 1, 2, 3, 4
-"""Outcomes of a search; BALANCED is an equilibrium of which it is not known whether it is stable."""
+"""Outcomes of a search; BALANCED is an equilibrium of unknown stability."""
 UNKNOWN = -1
-"""Number of an equilibrium's unstable directions where it is not known."""
+"""Number of an equilibrium's unstable directions if it is not known."""
 
 AT_REST = 1e-8
 """Largest last Newton step (rad, or elongation over L0): its square is below rounding."""
 ROUNDED = 1e-15
-"""Largest Newton step that is rounding even where it still falls: towards zero it may for ever."""
+"""Largest Newton step that is rounding even if it still falls: towards zero it may fall for ever."""
 FALLING = 0.9
 """Largest ratio of a residual or a step to the last one while it still falls; above, it is rounding."""
 AT_LIMIT = 1e-6
@@ -26,8 +26,8 @@ TOWARDS_LIMIT = 0.1
 """Smallest part of the clearance that a step must leave: else a step that is too long looks like a limit."""
 UNBALANCED = 1e-8
 """Largest residual over the size of the forces that meet in it, at an equilibrium."""
-ROUNDED = 1e-12
-"""The same over the largest such size along the arm, and over the torque of the softest segment at 1 rad."""
+ROUNDED_FORCE = 1e-12
+"""Largest residual from rounding, over the largest such size or the softest segment's torque at 1 rad."""
 LARGEST_TURN = 1.0
 """Largest turn of any disk in one step, rad."""
 
@@ -91,7 +91,7 @@ def pose_pass(
     chain: np.ndarray,
     scalars: np.ndarray,
 ) -> None:
-    """Outward, at rest: what the inward passes need, lengths of coupled cables first."""
+    """Outward pass at rest for the inward passes, after the lengths of coupled cables."""
     n = q.shape[0]
     if passes.lengths != 0:
         run(passes.lengths, n, scalars, q, inputs, segments, chain)
@@ -101,7 +101,7 @@ def pose_pass(
 
 @compiled
 def are_small(residual: np.ndarray, sizes: np.ndarray, unit: float) -> bool:
-    """Whether no unbalanced force is large in units of the forces that meet there, or not a number.
+    """Whether every unbalanced force is small relative to the forces that contribute to it.
 
     ``sizes`` are these forces, and then the segment's stiffness against bending; ``unit`` is the length that
     makes torques of forces.
@@ -115,7 +115,7 @@ def are_small(residual: np.ndarray, sizes: np.ndarray, unit: float) -> bool:
     for i in range(n):
         for k in range(dofs):
             lever = unit if k == 1 else 1.0
-            allowed = UNBALANCED * sizes[i, k] * lever + ROUNDED * (greatest + softest)
+            allowed = UNBALANCED * sizes[i, k] * lever + ROUNDED_FORCE * (greatest + softest)
             if not abs(residual[i, k]) * lever <= allowed:
                 return False
     return True
@@ -123,18 +123,13 @@ def are_small(residual: np.ndarray, sizes: np.ndarray, unit: float) -> bool:
 
 @compiled
 def is_balanced(
-    passes: RestPasses,
-    q: np.ndarray,
-    inputs: np.ndarray,
-    segments: np.ndarray,
-    disks: np.ndarray,
-    unit: float,
+    passes: RestPasses, disks: np.ndarray, chain: np.ndarray, residual: np.ndarray, unit: float
 ) -> bool:
-    """Whether the forces balance at ``q``, shape (n, dofs), whatever led there."""
-    n, dofs = q.shape
-    chain, scalars = np.empty((n, passes.chain_columns)), np.empty(SCALARS)
-    residual, sizes = np.empty((n, dofs)), np.empty((n, passes.size_columns))
-    pose_pass(passes, q, inputs, segments, disks, chain, scalars)
-    run(passes.residual, n, scalars, disks, chain, residual)
+    """Whether the unbalanced forces at the q of ``chain`` are small.
+
+    ``unit`` is the length that makes torques of forces.
+    """
+    n, scalars = residual.shape[0], np.empty(SCALARS)
+    sizes = np.empty((n, passes.size_columns))
     run(passes.sizes, n, scalars, disks, chain, sizes)
     return are_small(residual, sizes, unit)

@@ -1,17 +1,17 @@
-"""A search for the equilibrium of cables that rub, from where they were before: they stick, or slip on.
+"""A search for the equilibrium of cables with friction, which stick or slip from their earlier position.
 
 Friction at a hole is tanh(s) of its largest, s = (length before - length beyond) / slip length, with a slip
-length of 1e-6 of the arm's. Newton's method in q alone overshoots wherever a hole turns from sticking to
-slipping: tanh is a step at the scale of q. So the signs, sigma = tanh(s), are unknowns of their own:
+length of 1e-6 of the arm's. Newton's method in q alone overshoots when a hole changes from sticking to
+slipping, because tanh is a step on the scale of q. So the signs, sigma = tanh(s), are unknowns of their own:
 
     r(q, sigma) = 0      length beyond(q) + slip length artanh(sigma) = length before
 
 Neither is steep in q and sigma, and Newton's method on both together takes about ten iterations, as
-primal-dual interior-point methods do, whose barrier the slip length is (Chan, Golub and Mulet 1999 for a law
+primal-dual interior-point methods do, with the slip length as barrier (Chan, Golub and Mulet 1999 for a law
 of the same form). No step takes a sign beyond 1. A hole's change of sign follows from that of q, so the
-matrix left for q is the kernel's own, and the elimination along the chain solves for it; what that leaves
-out, the change of the holes' angles, is corrected only where the search fails without. The kernel knows no
-signs: it is given the length before that makes them.
+matrix for q is the kernel's own, and the elimination along the chain solves for it; the change of the holes'
+angles, which it neglects, is corrected only if the search fails without it. The kernel has no signs as input:
+it receives the length before that produces them.
 """
 
 import math
@@ -37,7 +37,7 @@ from statics.passes.search import (
 )
 
 TOWARDS_SLIPPING = 0.95
-"""Largest part of what a sign lacks to 1 that one step may take."""
+"""Largest part of a sign's distance to 1 that one step may cover."""
 SLIPPING = 1.0 - 1e-15
 """Largest sign; 1 has no artanh."""
 SIGNS_AT_REST = 1e-4
@@ -97,7 +97,7 @@ def unbalanced_with(
 
 @compiled
 def lack(remembered: np.ndarray, segments: np.ndarray, holes: Holes, lacking: np.ndarray) -> None:
-    """Change of every sign that its own equation asks for while q stays, linearized, into ``lacking``."""
+    """Change of every sign that its own equation requires at fixed q, linearized, into ``lacking``."""
     columns, beyond, sign = holes
     for i in range(sign.shape[0]):
         for c in range(columns.shape[0]):
@@ -242,9 +242,9 @@ def correct_step(
     chain: np.ndarray,
     directions: np.ndarray,
 ) -> None:
-    """Turn a lagged step into the exact one, by generalized conjugate residuals (Eisenstat, Elman, Schultz).
+    """Correct an approximate step by generalized conjugate residuals (Eisenstat, Elman, Schultz).
 
-    ``directions``, shape (2 most, n, dofs), is a workspace: as many directions, and what becomes of them.
+    ``directions``, shape (2 most, n, dofs), is a workspace for directions and their images.
     """
     most, (n, dofs) = directions.shape[0] // 2, q.shape
     other_chain, at_holes = np.empty(chain.shape), np.empty((2, n, holes[0].shape[0]))

@@ -1,4 +1,4 @@
-"""Ctrl-C, where it must wait: while a file is written, or while there is something to be kept first."""
+"""Deferred Ctrl-C: while a file is written, or while results are saved first."""
 
 import signal
 import sys
@@ -13,7 +13,7 @@ Item = TypeVar("Item")
 
 @dataclass
 class Interruption:
-    """Whether Ctrl-C was pressed and not answered yet, and whether it raises where it is pressed."""
+    """Whether Ctrl-C was pressed and not answered yet, and whether it raises at once."""
 
     asked: bool = False
     raises: bool = False

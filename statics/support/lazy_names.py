@@ -1,4 +1,4 @@
-"""Names of a package that are loaded when they are asked for: a command's help need not load a solver."""
+"""Names of a package that are loaded on first use, so that a command's help loads no solver."""
 
 import ast
 from collections.abc import Callable

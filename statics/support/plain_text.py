@@ -1,7 +1,7 @@
 """Text from elsewhere, such as titles and paths, made fit to be shown."""
 
 REPLACEMENT = "\ufffd"
-"""The character that stands for one that cannot be shown."""
+"""Replacement of a character that cannot be shown."""
 
 
 def plain(text: str, kept: str = "\n\t") -> str:

@@ -10,7 +10,7 @@ LOG = logging.getLogger("continuum_dyn")
 
 @contextmanager
 def stage(name: str) -> Iterator[None]:
-    """Tell how long what is done within took, once it is done."""
+    """Report the time of the block at its end."""
     started = time.perf_counter()
     yield
     LOG.info("%s: %.3g s", name, time.perf_counter() - started)

@@ -9,7 +9,7 @@ from conftest import SCENARIOS, edited
 
 from continuum_dyn import load_scenario
 from continuum_dyn.answers.pace import at_pace
-from continuum_dyn.scenario.intervals import cut_into_intervals, inputs_at
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.studies import MotionStudy
 from statics import InputError
@@ -19,7 +19,7 @@ TIMES = np.array([0.0, 0.013, 0.05, 0.1, 0.17, 0.31, 0.4999])
 
 def inputs(scenario: Scenario, time: np.ndarray) -> np.ndarray:
     assert isinstance(scenario.study, MotionStudy)
-    return inputs_at(cut_into_intervals(scenario.profiles, scenario.study.duration), time)
+    return cut_into_intervals(scenario.profiles, scenario.study.duration).inputs(time)
 
 
 @pytest.mark.parametrize(

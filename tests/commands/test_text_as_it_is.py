@@ -132,7 +132,7 @@ def test_files_of_names_that_are_not_utf_8(tmp_path: Path, scenario: Path) -> No
         ("run", given.with_suffix(".h5"), "--out", folder),
         ("info", given.with_suffix(".h5")),
         ("plot", given.with_suffix(".h5"), "--out", folder / "x.png"),
-        ("run", given, "--set", "arm.disks=5", "--out", folder),
+        ("run", given, "--set", "arm.disks=5", "--name", given.stem, "--out", folder),
     ):
         result = program(*arguments)
         assert result.returncode == 0, result.stderr

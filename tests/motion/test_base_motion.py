@@ -21,7 +21,7 @@ from continuum_dyn.modes import Mode, modes
 from continuum_dyn.passes.accelerations import acceleration
 from continuum_dyn.passes.dynamics import Dynamics
 from continuum_dyn.record import read_log, write_log
-from continuum_dyn.scenario.intervals import Interval, Intervals, cut_into_intervals
+from continuum_dyn.scenario.intervals import Interval, Timeline, cut_into_intervals
 from continuum_dyn.scenario.profiles import Constant, Piecewise, Profile, Ramp, Sine, SmoothRamp, Step, Table
 from continuum_dyn.scenario.rates import Rate, check_smooth
 from continuum_dyn.scenario.solver import Solver
@@ -54,15 +54,15 @@ def mounted(scenario: Scenario, **changes: Any) -> Scene:
     return Scene(replace(scenario.scene.arm, **changes), scenario.scene.effects)
 
 
-def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> Intervals:
+def driven(x: Profile, y: Profile, angle: Profile, duration: float) -> Timeline:
     rates = [Rate(profile) for profile in (x, y, angle)]
     profiles: list[Piecewise] = [x, y, angle, *rates, *map(Rate, rates)]
     return cut_into_intervals(profiles, duration)
 
 
-def moved(scene: Scene, stretches: Intervals, solver: Solver, samples: int = 21) -> Trajectory:
+def moved(scene: Scene, stretches: Timeline, solver: Solver, samples: int = 21) -> Trajectory:
     dynamics = Dynamics(scene)
-    times = np.linspace(0.0, stretches[-1].end, samples)
+    times = np.linspace(0.0, stretches.end, samples)
     start = dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs)))
     monitor = Monitor(inspect=inspector(dynamics))
     return integrate(dynamics, stretches, times, start, solver, monitor)
@@ -118,7 +118,7 @@ def test_one_segment_on_a_rotating_base_feels_the_centrifugal_force() -> None:
 def test_jacobian_is_exact_where_the_base_moves() -> None:
     """The integrand of the work, too, against differences of sixth order."""
     dynamics = Dynamics(small_arm(Gravity(), MaterialDamping(1.2e-3)))
-    span = driven(*SWEPT, 0.2)[1]
+    _, span, *_ = driven(*SWEPT, 0.2)
     random = np.random.default_rng(4)
     y = dynamics.state(random.uniform(-0.5, 0.5, (2, 1)), random.uniform(-20.0, 20.0, (2, 1)))
     size = 2 * dynamics.size
@@ -218,7 +218,7 @@ def test_modes_are_those_of_the_arm_on_its_base_at_rest(shaken: Scenario) -> Non
 def lowest_mode(scene: Scene) -> Mode:
     """About the straight arm."""
     dynamics, inputs = Dynamics(scene), scene.check_tension([])
-    span = cut_into_intervals([Constant(float(value)) for value in inputs], 1.0)[0]
+    span = cut_into_intervals([Constant(float(value)) for value in inputs], 1.0).first
     return modes(dynamics, dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs))), span)[0]
 
 

@@ -40,8 +40,13 @@ DRIVE = {TENSION: 0.7, RUBS: 1.3, LENGTH: 0.02, BOTH: 0.025}
 """Tensions (N), or displacements (m) that leave no cable slack in any of the states below."""
 
 
-def scene_of(kinds: tuple[CableKind, ...], subsegments: int = 1, *, moves: bool = False) -> Scene:
-    """Three disks, and cables on either side whose holes differ; the last cable ends at the second disk."""
+def scene_of(
+    kinds: tuple[CableKind, ...], subsegments: int = 1, *, moves: bool = False, start: int | None = None
+) -> Scene:
+    """Three disks, and cables on either side whose holes differ; the last cable ends at the second disk.
+
+    The first one leaves its sheath at the disk ``start``.
+    """
     cables = tuple(
         Cable(
             f"cable_{number}",
@@ -50,6 +55,7 @@ def scene_of(kinds: tuple[CableKind, ...], subsegments: int = 1, *, moves: bool 
             cable_stiffness=STIFFNESS if kind.driven_by_length else None,
             friction=0.2 + 0.1 * number if kind.rubs else 0.0,
             slip_speed=SLIP_SPEED,
+            start=start if number == 0 else None,
         )
         for number, kind in enumerate(kinds)
     )
@@ -78,11 +84,12 @@ def pieces_of(scene: Scene, drive: np.ndarray) -> np.ndarray:
     return pieces
 
 
+@pytest.mark.parametrize("start", [None, 1])
 @pytest.mark.parametrize(("kinds", "subsegments"), ON_ANY_MESH)
 def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
-    kinds: tuple[CableKind, ...], subsegments: int
+    kinds: tuple[CableKind, ...], subsegments: int, start: int | None
 ) -> None:
-    scene = scene_of(kinds, subsegments, moves=True)
+    scene = scene_of(kinds, subsegments, moves=True, start=start)
     oracle, dynamics = WholeCables(scene, drive_of(kinds)), Dynamics(scene)
     span = Interval(0.0, 1.0, pieces_of(scene, oracle.drive))
     for seed in range(3):
@@ -101,11 +108,12 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
         assert core > 0.0
 
 
+@pytest.mark.parametrize("start", [None, 1])
 @pytest.mark.parametrize(
     "kinds", [pytest.param(kinds, marks=() if kinds in BY_DEFAULT else pytest.mark.slow) for kinds in KINDS]
 )
-def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...]) -> None:
-    scene = scene_of(kinds, moves=True)
+def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...], start: int | None) -> None:
+    scene = scene_of(kinds, moves=True, start=start)
     dynamics, span = Dynamics(scene), Interval(0.0, 1.0, pieces_of(scene, drive_of(kinds)))
     q, u = random_state(scene, seed=1, bend=0.7)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
@@ -136,12 +144,13 @@ def newton_step(scene: Scene, q: np.ndarray, drive: np.ndarray, before: np.ndarr
     return residual, change, counted.get("negative_pivots", np.nan)
 
 
+@pytest.mark.parametrize("start", [None, 1])
 @pytest.mark.parametrize(("kinds", "subsegments"), ON_ANY_MESH)
 def test_newton_step_at_rest_solves_the_dense_system_but_for_turning_angles(
-    kinds: tuple[CableKind, ...], subsegments: int
+    kinds: tuple[CableKind, ...], subsegments: int, start: int | None
 ) -> None:
     """What changes of turning angles do to tensions is left out of the matrix, and of this one, too."""
-    scene = scene_of(kinds, subsegments)
+    scene = scene_of(kinds, subsegments, start=start)
     oracle, slip_length = WholeCables(scene, drive_of(kinds)), 1e-6 * scene.arm.total_length
     unit = np.tile([1.0, scene.arm.rest_length], scene.arm.segments)
     for seed in range(4):

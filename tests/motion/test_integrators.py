@@ -212,7 +212,9 @@ def test_jump_at_the_start_is_resolved_though_the_axial_modes_are_fast(step_resp
 def chosen(scene: Scene, duration: float = 1.0, exact: bool = False) -> str:
     dynamics = Dynamics(scene)
     start = dynamics.state(equilibrium(scene, 0.0).coordinates)
-    return choose(dynamics, start, cut_into_intervals((Step(0.0, 1.0),), duration)[0], duration, exact).method
+    return choose(
+        dynamics, start, cut_into_intervals((Step(0.0, 1.0),), duration).first, duration, exact
+    ).method
 
 
 def without_extension(disks: int) -> Scene:

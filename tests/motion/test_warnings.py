@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from continuum_dyn import Run, load_scenario, simulate
 from continuum_dyn.cli import app
 from continuum_dyn.record import read_log, write_log
+from continuum_dyn.record.writing import attributes_of
 
 STEP = SCENARIOS / "step_response.toml"
 RAMP = SCENARIOS / "tension_ramp.toml"
@@ -30,6 +31,31 @@ ODD = {
     ),
     "degrees of the base": (RAMP, ["base.angle=90"], "90 degrees are 1.5708 rad"),
     "a modulus in GPa": (RAMP, ["arm.youngs_modulus=210"], "210 GPa are 2.1e+11 Pa"),
+    "a modulus in GPa, of the weight": (
+        SCENARIOS / "unactuated.toml",
+        ["arm.youngs_modulus=0.21"],
+        "0.21 GPa are 2.1e+08 Pa",
+    ),
+    "a chain": (
+        SCENARIOS / "unactuated.toml",
+        ["effects={gravity={},extension={}}"],
+        "nothing resists bending",
+    ),
+    "nothing takes energy": (
+        STEP,
+        ["effects.material_damping.retardation_time=0.0", "study.duration=0.01"],
+        "nothing takes energy from the motion",
+    ),
+    "a change cut short": (
+        STEP,
+        ['cables.upper.tension={profile="ramp",before=0,after=1,start=0.5,end=2}'],
+        "changes until 2 s, and the run ends at 1 s: the rest does not show",
+    ),
+    "an accuracy in mm": (
+        STEP,
+        ["accuracy.tip=0.5", "study.duration=0.1"],
+        "[accuracy] tip = 0.5 m is above all",
+    ),
     "milliseconds": (
         STEP,
         ["effects.material_damping.retardation_time=1.2"],
@@ -58,7 +84,9 @@ ODD = {
 def test_what_is_odd_is_told_with_what_it_may_have_been(
     scenario: Path, changes: list[str], told: str
 ) -> None:
-    assert any(told in warning for warning in run(scenario, *changes).warnings)
+    found = run(scenario, *changes)
+    assert [warning for warning in found.warnings if told in warning]
+    assert attributes_of(found)["warnings"].splitlines() == list(found.warnings)
 
 
 @pytest.mark.parametrize(
@@ -66,6 +94,11 @@ def test_what_is_odd_is_told_with_what_it_may_have_been(
 )
 def test_what_is_ordinary_is_not_warned_of(name: str) -> None:
     assert run(SCENARIOS / f"{name}.toml").warnings == ()
+
+
+def test_ramp_that_ends_with_the_run_is_ordinary() -> None:
+    ramp = 'cables.upper.tension={profile="ramp",before=0,after=1,start=0,end=1}'
+    assert not [text for text in run(STEP, ramp).warnings if "changes" in text]
 
 
 def test_warnings_are_in_the_log_the_json_and_the_terminal(tmp_path: Path) -> None:

@@ -36,6 +36,7 @@ SLOW = {
     "docs/how_to/accuracy.md",
     "docs/how_to/hard_cases.md",
     "docs/how_to/logs.md",
+    "docs/how_to/own_arm.md",
     "docs/how_to/scenario.md",
     "docs/how_to/settling.md",
     "docs/how_to/tension_ramp.md",

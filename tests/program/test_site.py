@@ -1,4 +1,4 @@
-"""The pages of docs/ as a site: built without a warning, and the parts that the program tells are whole."""
+"""The pages of docs/: generated parts are whole and current, and a site is built without a warning."""
 
 import re
 import subprocess
@@ -18,23 +18,43 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.fixture(scope="module")
-def parts() -> dict[str, str]:
-    """What the program tells of itself, in Markdown, by part."""
+def reference() -> Any:
+    """The module that writes the generated parts."""
     sys.path.insert(0, str(DOCS))
     try:
         import generated_reference  # pyright: ignore[reportMissingImports]
     finally:
         sys.path.remove(str(DOCS))
-    return {name: part() for name, part in generated_reference.PARTS.items()}
+    return generated_reference
+
+
+@pytest.fixture(scope="module")
+def parts(reference: Any) -> dict[str, str]:
+    """What the program tells of itself, in Markdown, by part."""
+    return {name: part() for name, part in reference.PARTS.items()}
 
 
 def headings(text: str) -> list[str]:
     return re.findall(r"^#+ (.*)$", text, flags=re.MULTILINE)
 
 
+PAGES = sorted((DOCS / "reference").glob("*.md"))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_generated_parts_of_a_page_are_current(page: Path, reference: Any) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert reference.renewed(text) == text, "the page is stale: make reference"
+
+
 def test_every_part_is_on_a_page(parts: dict[str, str]) -> None:
-    pages = "".join(page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md"))
-    assert set(re.findall(r"^```\{generated\} (\w+)$", pages, flags=re.MULTILINE)) == set(parts)
+    pages = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    assert set(re.findall(r"^<!-- generated: (\w+) -->$", pages, flags=re.MULTILINE)) == set(parts)
+
+
+def test_public_names_are_in_the_reference_with_their_docstrings(parts: dict[str, str]) -> None:
+    assert "The answer to a scenario." in parts["python_names"]  # the docstring of Run
+    assert "- `preset(name, **changes)`: An arm from the literature;" in parts["python_names"]
 
 
 def test_reference_has_every_command_with_its_options(parts: dict[str, str]) -> None:
@@ -48,7 +68,7 @@ def test_reference_has_every_command_with_its_options(parts: dict[str, str]) -> 
 
 def test_reference_has_every_key_of_every_table_with_its_meaning(parts: dict[str, str]) -> None:
     schema = json_schema()
-    rows = dict(re.findall(r"^\| `(\w+)` \|.*\| (.*) \|$", parts["scenario_keys"], flags=re.MULTILINE))
+    rows = dict(re.findall(r"^\| `(\w+)` \|.*\| (.*) \| .* \|$", parts["scenario_keys"], flags=re.MULTILINE))
     for table in (schema, *schema["$defs"].values()):
         for name, key in keys_of(table):
             if name not in EFFECTS:

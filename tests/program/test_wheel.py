@@ -75,7 +75,12 @@ def test_wheel_holds_the_packages_with_their_data_and_nothing_else(wheel: Path) 
     }
     for package in ("statics", "continuum_dyn"):
         assert f"{package}/py.typed" in names
-    assert "continuum_dyn/commands/first_scenario.toml" in names
+    assert {"continuum_dyn/commands/first_scenario.toml", "continuum_dyn/scenario_files/examples.toml"} <= {
+        *names
+    }
+    scenarios = REPOSITORY / "scenarios"
+    held = {name.removeprefix("continuum_dyn/scenarios/") for name in names if "/scenarios/" in name}
+    assert held == {file.relative_to(scenarios).as_posix() for file in scenarios.rglob("*") if file.is_file()}
     assert any(name.endswith("licenses/LICENSE") for name in names)
 
 
@@ -97,6 +102,7 @@ def test_installed_without_the_repository_it_runs_the_scenario_that_it_writes(
     assert Path(place).is_relative_to(programs.parent)
     program = programs / "continuum-dyn"
     run(program, "init", "arm.toml", cwd=tmp_path)
+    assert "slow_ramp.csv" in run(program, "init", "slow.toml", "--from", "slow_ramp", cwd=tmp_path)
     record = json.loads(run(program, "run", "arm.toml", "--json", cwd=tmp_path))
     assert record["outcome"] == "settled"
     assert record["static_gap"] < 1e-6

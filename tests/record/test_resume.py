@@ -17,7 +17,7 @@ from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.record.resuming import resumption_of
 from continuum_dyn.record.writing import columns_of
-from continuum_dyn.scenario.intervals import cut_into_intervals, inputs_at
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.profiles import Sine
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
@@ -235,7 +235,7 @@ def test_columns_of_a_log_give_back_the_states_that_they_show(name: str) -> None
     stretches = cut_into_intervals(scenario.profiles, scenario.study.duration)
     times = np.linspace(0.0, scenario.study.duration, 4)
     states = np.random.default_rng(0).normal(0.0, 1e-3, (4, dynamics.state_size))
-    shown = observe_trajectory(dynamics, times, states, inputs_at(stretches, times), np.zeros(4), {})
+    shown = observe_trajectory(dynamics, times, states, stretches.inputs(times), np.zeros(4), {})
     resumption = Resumption(Solver(), {}, columns_of(shown))
     found, _ = resumption.states(dynamics, stretches)
     np.testing.assert_allclose(found, states, rtol=1e-12, atol=1e-15)

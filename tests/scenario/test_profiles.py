@@ -14,7 +14,8 @@ from pydantic import ValidationError
 from continuum_dyn import Scenario, simulate
 from continuum_dyn.integrators import METHODS
 from continuum_dyn.integrators.chain_stepper import ChainStepper
-from continuum_dyn.scenario.intervals import cut_into_intervals, intervals_after, join_intervals
+from continuum_dyn.scenario import intervals
+from continuum_dyn.scenario.intervals import cut_into_intervals, join_intervals
 from continuum_dyn.scenario.profiles import (
     TIME_RESOLUTION,
     Constant,
@@ -24,6 +25,7 @@ from continuum_dyn.scenario.profiles import (
     SmoothRamp,
     Step,
     Table,
+    change_times,
     lower_bound,
 )
 from continuum_dyn.scenario.rates import Rate
@@ -137,7 +139,8 @@ def test_a_step_keeps_its_size_across_corners_where_nothing_jumps(method: Method
 def test_a_jump_and_a_wave_start_the_steps_anew() -> None:
     profile = Table((0.0, 0.1, 0.2), (0.0, 1.0, 0.5))
     step, wave = Step(0.0, 1.0, at=0.15), SmoothRamp(0.0, 1.0, start=0.17, end=0.3)
-    joined = join_intervals(cut_into_intervals((profile, step, wave), 0.4))
+    (block,) = cut_into_intervals((profile, step, wave), 0.4).blocks()
+    joined = join_intervals(block)
     assert [[span.start for span in group] for group in joined] == [[0.0, 0.1], [0.15], [0.17, 0.2, 0.3]]
 
 
@@ -191,20 +194,67 @@ def test_cable_that_would_push_is_refused() -> None:
             Scenario(scene, (profile,), MotionStudy(1.0))
 
 
-def test_a_million_corners_are_cut_and_joined_at_once() -> None:
-    """In memory by the pieces' numbers: an object for each interval took 35 s and 0.6 GB."""
-    count = 1_000_000
+def test_a_million_corners_take_memory_for_a_block_of_them() -> None:
+    count = 300_000
     time = np.linspace(0.0, 1.0, count)
     zigzag = Table(tuple(time.tolist()), tuple((np.arange(count) % 2.0).tolist()))
-    tracemalloc.start()
-    intervals = cut_into_intervals((zigzag, Constant(1.0)), 1.0)
-    (joined,) = join_intervals(intervals)
-    largest = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert len(intervals) == len(joined) == count - 1
-    assert largest < 300e6
-    (rest,) = join_intervals(intervals_after(intervals, 0.5 * (time[-2] + time[-3])))
-    assert [(each.start, each.end) for each in rest] == [
-        (0.5 * (time[-2] + time[-3]), time[-2]),
-        (time[-2], 1.0),
-    ]
+    many = Table((0.0, 1.0 / count), (0.0, 1.0), periods=count)
+    for profile, most in ((zigzag, 50e6), (many, 30e6)):
+        timeline = cut_into_intervals((profile, Constant(1.0)), 1.0)
+        tracemalloc.start()
+        found = sum(len(block) for block in timeline.blocks())
+        largest = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert abs(found - count) <= 1
+        assert largest < most
+    cut = 0.5 * (time[-2] + time[-3])
+    rest = cut_into_intervals((zigzag, Constant(1.0)), 1.0).after(cut)
+    assert [(each.start, each.end) for each in rest] == [(cut, time[-2]), (time[-2], 1.0)]
+
+
+@pytest.mark.parametrize("values", [(0.5, 2.0, 0.5), (0.5, 2.0, 1.0)])
+@pytest.mark.parametrize("begin", [0.0, 0.7, -0.9])
+def test_periods_of_a_table_repeat_its_rows(begin: float, values: tuple[float, ...]) -> None:
+    """Also where it jumps between them, and where they begin before the motion does."""
+    rows = np.array([0.0, 0.1, 0.3])
+    table = Table(tuple((begin + rows).tolist()), values, periods=4)
+    times = np.linspace(0.0, 3.0, 1009)  # no corner among them
+    since = times - begin
+    within = np.where((since > 0.0) & (since < 1.2), since % 0.3, np.clip(since, 0.0, 0.3))
+    timeline = cut_into_intervals((table,), 3.0)
+    np.testing.assert_allclose(timeline.inputs(times)[:, 0], np.interp(within, rows, values), atol=1e-12)
+    assert table.initial == pytest.approx(np.interp(max(-begin, 0.0) % 0.3, rows, values))
+    assert lower_bound(table) == 0.5
+
+
+def test_blocks_meet_where_the_intervals_of_one_block_would(monkeypatch: pytest.MonkeyPatch) -> None:
+    profiles = (
+        Table((0.0, 0.1, 0.25), (0.0, 1.0, 0.5), periods=7),
+        Ramp(0.0, 1.0, 0.3, 0.8),
+        Sine(1.0, 0.5, 2.0),
+    )
+    whole = list(cut_into_intervals(profiles, 2.0))
+    monkeypatch.setattr(intervals, "BLOCK", 3)
+    timeline = cut_into_intervals(profiles, 2.0)
+    assert len(list(timeline.blocks())) > 3
+    assert [(each.start, each.end) for each in timeline] == [(each.start, each.end) for each in whole]
+    for found, expected in zip(timeline, whole, strict=True):
+        np.testing.assert_array_equal(found.pieces, expected.pieces)
+
+
+@pytest.mark.parametrize(
+    ("profile", "changes"),
+    [
+        (Constant(1.0), None),
+        (Step(1.0, 1.0), None),
+        (Step(1.0, 2.0, at=0.5), (0.5, 0.5)),
+        (SmoothRamp(1.0, 2.0, 0.5, 1.5), (0.5, 1.5)),
+        (Sine(1.0, 0.0, 2.0), None),
+        (Sine(1.0, 0.5, 2.0), (0.0, np.inf)),
+        (Table((0.0, 1.0, 2.0, 3.0), (1.0, 1.0, 2.0, 2.0)), (1.0, 2.0)),
+        (Table((0.0, 1.0), (1.0, 2.0), periods=3), (0.0, 3.0)),
+        (Table((-2.0, -1.0), (1.0, 2.0)), None),
+    ],
+)
+def test_times_at_which_a_profile_changes(profile: Profile, changes: tuple[float, float] | None) -> None:
+    assert change_times(profile) == changes

@@ -30,6 +30,7 @@ from statics import (
     tension_ramp,
 )
 from statics.arc_length import follow
+from statics.passes import search
 from statics.ramp import ramp
 
 SNAP = Path(__file__).parents[2] / "scenarios" / "snap_through.toml"
@@ -168,6 +169,27 @@ def test_column_branches_at_each_eigenvalue_however_many_a_step_passes(segments:
     np.testing.assert_allclose(found, passed, rtol=1e-5)
     assert [point.unstable_directions for point in path.critical] == list(range(len(passed)))
     assert path.outcome is Outcome.COMPLETED
+
+
+def is_stable(solver: StaticSolver, inputs: np.ndarray) -> bool:
+    straight = np.zeros((solver.scene.arm.segments, 1))
+    return solver.examine(straight, inputs, search.STABLE).unstable_directions == 0
+
+
+@pytest.mark.parametrize("beyond", [1.074, 1.0756])
+def test_two_branchings_that_cancel_within_a_step_are_both_reported(beyond: float) -> None:
+    """A column whose load moves from its tip to its middle: on the way it is stable over less than a step."""
+    arm = Arm(20, 0.05, youngs_modulus=1.0, second_moment=1.0)
+    loads = (DiskLoad(disk, (-1.0, 0.0), driven=True) for disk in (20, 10))
+    solver = StaticSolver(Scene(arm, (Bending(), DiskLoads(tuple(loads)))))
+    at_tip, at_middle = beyond * np.diag([2.46867, 9.88992])  # the loads that buckle it one at a time
+    parts = np.linspace(0.4, 0.6, 101)
+    stable = [part for part in parts if is_stable(solver, at_tip + part * (at_middle - at_tip))]
+    path = follow(solver, np.array([0.0 * at_tip, at_tip, at_middle]))
+    passed = [1.0 / beyond, 1.0 + stable[0], 1.0 + stable[-1]]
+    found = [parameter for parameter in path.parameters if parameter not in (0.0, 1.0, 2.0)]
+    np.testing.assert_allclose(found, passed, atol=2e-3)
+    assert [point.critical for point in path.critical] == [Critical.BRANCHING] * 3
 
 
 def test_plain_ramp_tells_the_first_of_many_branchings() -> None:

@@ -292,5 +292,5 @@ def test_bad_follower_is_named_with_what_is_allowed(tmp_path: Path, old: str, ne
 def test_undamped_motion_under_a_follower_is_never_left_to_the_midpoint_rule() -> None:
     scene = cantilever(2, DiskLoad(2, (0.0, 0.1), follower=True))
     dynamics = Dynamics(scene)
-    start, still = dynamics.state(at_rest(scene).coordinates), cut_into_intervals((), 1e5)[0]
+    start, still = dynamics.state(at_rest(scene).coordinates), cut_into_intervals((), 1e5).first
     assert choose(dynamics, start, still, 1e5).method == "explicit"

@@ -1,5 +1,7 @@
 """Logs made by hand, of an arm of two segments, so that what is shown of them is known without a solver."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +23,8 @@ def motion_log(
         "time": np.linspace(0.0, duration, samples),
         "tension": np.ones((samples, 1)),
         "cable_displacement": np.zeros((samples, 1)),
+        "bend_angle": np.zeros(rows),
+        "bend_angle_rate": np.zeros(rows),
         "curvature": np.zeros(rows),
         "length": np.full(rows, LENGTH / 2),
         "disk_x": np.tile([LENGTH / 2, LENGTH], (samples, 1)),
@@ -39,7 +43,7 @@ def motion_log(
         message="",
         scenario=SCENARIO + loads,
         tables={},
-        attributes={},
+        attributes={"study": "motion"},
         cables=("upper",),
         arm=arm,
         trajectory=trajectory,
@@ -64,3 +68,12 @@ def equilibria(points: np.ndarray, times: np.ndarray, tensions: np.ndarray) -> d
         "disk_y": np.zeros((rows, 2)),
         "stable": np.ones(rows, dtype=bool),
     }
+
+
+def ramp_log(tensions: Sequence[float], **columns: np.ndarray) -> Log:
+    """Equilibria of the straight arm under these tensions (N), its tip a mm farther each time."""
+    rows = len(tensions)
+    rests = equilibria(np.arange(1, rows + 1), np.zeros(rows), np.array(tensions))
+    rests |= {"disk_theta": np.zeros((rows, 2)), "jumped": np.zeros(rows), "critical": np.zeros(rows)}
+    log = motion_log(1)
+    return replace(log, trajectory={}, equilibria=rests | columns, attributes={"study": "ramp"})

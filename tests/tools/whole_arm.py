@@ -63,6 +63,7 @@ class WholeArm:
     g: np.ndarray
     relaxation: float
     r_h: np.ndarray
+    first: np.ndarray
     last: np.ndarray
     force: np.ndarray
     moment: np.ndarray
@@ -87,13 +88,14 @@ class WholeArm:
         return len(LOBATTO_INSIDE) if self.m_c.any() else 0
 
     def tension_along(self, tension: np.ndarray) -> np.ndarray:
-        """Tension of every cable from disk to disk, shape (cables, disks): zero beyond the anchor.
+        """Tension of every cable from disk to disk, shape (cables, disks): zero before start, beyond anchor.
 
         Takes one tension for each cable, or all of that shape.
         """
         along = np.array(tension)
         along = along[:, None] if along.ndim == 1 else along
-        return along * (np.arange(1, self.n // self.step + 1) <= self.last[:, None])
+        disk = np.arange(1, self.n // self.step + 1)
+        return along * ((disk > self.first[:, None]) & (disk <= self.last[:, None]))
 
 
 def whole_arm(scene: Scene) -> WholeArm:
@@ -129,6 +131,7 @@ def whole_arm(scene: Scene) -> WholeArm:
         g=np.array(gravity.acceleration if isinstance(gravity, Gravity) else (0.0, 0.0)),
         relaxation=damping.retardation_time if isinstance(damping, MaterialDamping) else 0.0,
         r_h=np.array([cable.holes(arm.disks) for cable in cables]).reshape(-1, arm.disks + 1),
+        first=np.array([cable.start or 0 for cable in cables]),
         last=np.array([cable.anchor or arm.disks for cable in cables]),
         force=force,
         moment=moment,

@@ -39,7 +39,7 @@ class WholeCables:
         return np.cumsum(self.lengths(q)[:, ::-1], axis=1)[:, ::-1]
 
     def turns(self, q: np.ndarray) -> np.ndarray:
-        """Angle by which each near hole turns the cable; the drive pulls along the base's normal."""
+        """Angle by which each near hole turns the cable, which comes to the first along its disk's normal."""
         x, y, theta = (
             np.append(base, values)[:: self.arm.step]
             for base, values in zip(whole_arm.base_pose(self.arm), whole_arm.poses(self.arm, q), strict=True)
@@ -47,7 +47,10 @@ class WholeCables:
         turns = np.empty_like(self.arm.r_h[:, 1:])
         for c, r_h in enumerate(self.arm.r_h):
             way = np.diff((x - r_h * np.sin(theta)) + 1j * (y + r_h * np.cos(theta)))
-            turns[c] = np.angle(way / np.concatenate([[np.exp(1j * theta[0])], way[:-1]]))
+            first = self.arm.first[c]
+            turns[c, :first] = 0.0
+            pulled = np.concatenate([[np.exp(1j * theta[first])], way[first:-1]])
+            turns[c, first:] = np.angle(way[first:] / pulled)
         return turns
 
     def drives(self, q: np.ndarray) -> np.ndarray:

@@ -62,7 +62,7 @@ def test_series_of_a_motion_are_those_of_the_log(motion: Log, tmp_path: Path) ->
     entities, columns = shown(motion, tmp_path), motion.trajectory
     for name, expected in {
         "tension": columns["tension"],
-        "energy": np.column_stack([columns[name] - columns[name][0] for name in LEDGER]),
+        "energy": 1e3 * np.column_stack([columns[name] - columns[name][0] for name in LEDGER]),  # mJ
         "power": np.column_stack([columns["input_power"], columns["dissipated_power"]]),
         "curvature": columns["curvature"],
     }.items():
@@ -107,6 +107,13 @@ def test_cables_run_through_their_holes_to_their_anchor(motion: Log, tmp_path: P
     assert_close(holes[:, 0], [[0.0, offset]] * len(rows))
     assert_close(holes[:, 1:, 0], columns["disk_x"][rows, :3] - offset * np.sin(theta))
     assert_close(holes[:, 1:, 1], columns["disk_y"][rows, :3] + offset * np.cos(theta))
+
+
+def test_a_sheathed_cable_is_drawn_from_its_start(motion: Log, tmp_path: Path) -> None:
+    sheathed = replace(motion, arm={**motion.arm, "start": np.array([2])})
+    holes = points(shown(sheathed, tmp_path)["/arm/cables/upper"])[:, 0]
+    whole = points(shown(motion, tmp_path)["/arm/cables/upper"])[:, 0]
+    assert_close(holes, whole[:, 2:])
 
 
 def test_a_settled_arm_lies_on_its_equilibrium(motion: Log, tmp_path: Path) -> None:

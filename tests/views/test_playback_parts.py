@@ -167,9 +167,9 @@ def test_tip_is_plotted_with_its_target_and_the_band_that_counts_as_settled() ->
     log = motion_log(4, tension=np.array([[0.0], [0.5], [1.0], [1.0]]))
     log = replace(log, equilibria=equilibria(np.array([1, 2]), np.array([0.0, 1.0]), np.array([0.0, 1.0])))
     tip, target, low, high = plots_of(playback_from(log))["tip_x"].series
-    np.testing.assert_array_equal(tip.values, LENGTH)
-    np.testing.assert_allclose(target.values, [np.nan, np.nan, LENGTH + 1e-3, LENGTH + 1e-3])
-    np.testing.assert_allclose(high.values - low.values, [np.nan, np.nan, 2e-3 * LENGTH, 2e-3 * LENGTH])
+    np.testing.assert_array_equal(tip.values, 1e3 * LENGTH)  # mm
+    np.testing.assert_allclose(target.values, [np.nan, np.nan, 1e3 * LENGTH + 1.0, 1e3 * LENGTH + 1.0])
+    np.testing.assert_allclose(high.values - low.values, [np.nan, np.nan, 2.0 * LENGTH, 2.0 * LENGTH])
 
 
 # ---- several runs ----

@@ -24,7 +24,7 @@ def test_recording_replaces_no_log_and_no_scenario(log: Path, tmp_path: Path) ->
     scenario, renamed = tmp_path / "arm.toml", tmp_path / "log.rrd"
     scenario.write_text("title = 'kept'")
     renamed.write_bytes(log.read_bytes())
-    for path, said in ((scenario, "ends in .rrd"), (log, "ends in .rrd"), (renamed, "a log is there")):
+    for path, said in ((scenario, "ends in .rrd"), (log, "ends in .rrd"), (renamed, "is no recording")):
         before = path.read_bytes()
         result = runner.invoke(app, ["play", str(log), "--save", str(path)])
         assert result.exit_code == 2

@@ -1,4 +1,4 @@
-"""Assertions about figures: ``--assert "settling_time_2 < 0.8"``. Nothing of them is evaluated as code."""
+"""Assertions about figures: ``--assert "settling_time_2 < 0.8"``. They are parsed, not evaluated as code."""
 
 import operator
 import re
@@ -21,7 +21,7 @@ COMPARISONS: dict[str, Callable[[float, float], bool]] = {
 }
 GRAMMAR = re.compile(r"\s*(\w+)\s*(<=|>=|<|>)\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*", re.ASCII)
 """NAME, a comparison, NUMBER."""
-HELP = 'Exit with 1 unless it holds, e.g. "{}"; NAME < NUMBER, or <=, >, >=; in SI units. Repeatable.'
+HELP = 'Exit with 1 if this does not hold, e.g. "{}"; NAME < NUMBER, or <=, >, >=; SI units. Repeatable.'
 
 
 class Assertion(NamedTuple):

@@ -8,25 +8,27 @@ from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.show import duration, length, mode_row, plain_table, with_status
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from continuum_dyn.experiments.cost import LeftOut
     from continuum_dyn.modes import RestModes
     from continuum_dyn.scenario.scenario import Scenario
 
 LOWEST = 3
-"""Modes that are told of."""
+"""Largest number of modes shown."""
 
 
 def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
     """Print the operations that each effect adds to a segment, and its rates about rest."""
-    from continuum_dyn.equations.operations import added_by_each, operations
+    from continuum_dyn.equations.operations import operations
 
     scene = scenario.scene
     columns = ("What each adds to a segment", "coordinate", "operations")
     shown = plain_table("", *columns, *([] if found is None else ["rates (1/s) without it"]))
-    added = added_by_each(scene)
+    added, rates_of = with_status(scenario.title, lambda progress: _measure(scenario, found, progress))
     for effect in scene.effects:
         count = added[effect.name]
-        rates = [] if found is None else [_rates(scenario, effect.name)]
+        rates = rates_of[effect.name]
         operated = "" if count is None else str(count)
         shown.add_row(f"  {effect.name}", ", ".join(effect.coordinates), operated, *rates)
     rates = [] if found is None else [_range(found.rates)]
@@ -34,6 +36,20 @@ def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
     say()
     console().print(shown)
     say("  Operations: arithmetic that the steps of one evaluation would lose with it.")
+
+
+def _measure(
+    scenario: "Scenario", found: "RestModes | None", progress: "Callable[[str], None]"
+) -> tuple[dict[str, int | None], dict[str, list[str]]]:
+    """Operations that each effect adds, and the rates of the motion without it."""
+    from continuum_dyn.equations.operations import added_by_each
+
+    progress("what each effect adds")
+    added, rates_of = added_by_each(scenario.scene), {}
+    for effect in scenario.scene.effects:
+        progress(f"rates without {effect.name}")
+        rates_of[effect.name] = [] if found is None else [_rates(scenario, effect.name)]
+    return added, rates_of
 
 
 def _rates(scenario: "Scenario", effect: str) -> str:
@@ -64,7 +80,7 @@ def show_modes(found: "RestModes") -> None:
 
 
 def show_what_to_leave_out(scenario: "Scenario") -> None:
-    """Effects that move the tip by less than is asked for, measured by leaving each out in turn."""
+    """Effects that move the tip by less than the requested accuracy, measured by leaving each out in turn."""
     from continuum_dyn.experiments.cost import effects, prepare_motion
 
     allowed, said = _allowed(scenario)
@@ -89,7 +105,7 @@ def _row(effect: "LeftOut", allowed: float) -> tuple[str, ...]:
 
 
 def _allowed(scenario: "Scenario") -> tuple[float, str]:
-    """Tip error (m) that is allowed, and where that is said."""
+    """Largest allowed tip error, m, and the key that sets it."""
     if scenario.accuracy is not None:
         return scenario.accuracy.tip, "[accuracy] tip"
     if getattr(scenario.study, "settled_within", None) is not None:

@@ -1,4 +1,4 @@
-"""Writes figures to files."""
+"""Writing figures to files."""
 
 import warnings
 from pathlib import Path
@@ -15,7 +15,7 @@ DOTS_PER_INCH = 200
 
 
 def save(figure: "Figure", path: Path) -> None:
-    """Write a figure; the suffix says as what. Raises ``LogError`` if it cannot be written."""
+    """Write a figure in the format of its suffix. Raises ``LogError`` if it cannot be written."""
     try:
         with defer_interruption(), warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Glyph .* missing from")  # it is drawn as a box

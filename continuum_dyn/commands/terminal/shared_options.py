@@ -16,19 +16,17 @@ PANEL = "Options of every command"
 
 Quiet = Annotated[
     bool,
-    typer.Option(
-        "--quiet", "-q", help="Say nothing but errors, and what --json asks for.", rich_help_panel=PANEL
-    ),
+    typer.Option("--quiet", "-q", help="Print only errors, and JSON if requested.", rich_help_panel=PANEL),
 ]
 Verbose = Annotated[
     bool,
     typer.Option(
-        "--verbose", "-v", help="Tell what is compiled, and how long each stage takes.", rich_help_panel=PANEL
+        "--verbose", "-v", help="Print what is compiled, and the time of each stage.", rich_help_panel=PANEL
     ),
 ]
 WithoutCache = Annotated[
     bool,
-    typer.Option("--no-cache", help="Compile anew, and keep nothing of it.", rich_help_panel=PANEL),
+    typer.Option("--no-cache", help="Compile everything again, and cache nothing.", rich_help_panel=PANEL),
 ]
 
 

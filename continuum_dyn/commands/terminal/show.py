@@ -18,6 +18,9 @@ from statics.support.plain_text import plain
 if TYPE_CHECKING:
     from continuum_dyn.modes import Mode
 
+LEAST_STRAIN = 1e-9
+"""Bending strain below which a core is said to be straight: rounding leaves some."""
+
 
 def length(value: float) -> str:
     """A length (m) in the unit that reads best."""
@@ -41,6 +44,11 @@ def duration(value: float) -> str:
         if abs(value) >= 0.999 * size:
             return f"{value / size:.3g} {unit}"
     return f"{value / 1e-9:.3g} ns"
+
+
+def bending(strain: float) -> str:
+    """Largest bending strain, in percent."""
+    return f"{100.0 * strain:.2g} % strain of the core at most" if strain >= LEAST_STRAIN else "none"
 
 
 def mode_row(mode: "Mode") -> tuple[str, str, str]:

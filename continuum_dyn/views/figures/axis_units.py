@@ -27,6 +27,8 @@ def axis(name: str, values: Any, words: str | None = None) -> Axis:
     if quantity.unit == "1":
         return Axis(1.0, words)
     largest = float(np.max(np.abs(values), initial=0.0))
+    if largest == 0.0 and quantity.unit == "m":
+        return Axis(1e3, f"{words} (mm)")
     if quantity.unit not in PREFIXED or largest == 0.0:
         return Axis(1.0, f"{words} ({quantity.unit})")
     fitting = (pair for pair in PREFIXES if largest >= READS_WELL * pair[1])

@@ -1,6 +1,7 @@
 """The arm's shape as points to draw, from the columns of a log."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,13 @@ def poses(columns: Mapping[str, np.ndarray], rows: np.ndarray) -> tuple[np.ndarr
     disks = (columns[name][rows] for name in ("disk_x", "disk_y", "disk_theta"))
     x, y, theta = (np.hstack(both) for both in zip(base_pose(columns, rows), disks, strict=True))
     return np.stack([x, y], axis=-1), np.stack([-np.sin(theta), np.cos(theta)], axis=-1)
+
+
+def disk_reach(arm: Mapping[str, Any], columns: Mapping[str, np.ndarray]) -> float:
+    """Half the width that a disk is drawn with, m: a little beyond the outermost hole."""
+    outermost_hole = float(np.abs(arm["hole_offset"]).max(initial=0.0))
+    spacing = columns["length"][0].sum() / columns["disk_x"].shape[1]
+    return 1.2 * outermost_hole or 0.25 * float(spacing)
 
 
 def backbone(columns: Mapping[str, np.ndarray], rows: np.ndarray, points: int) -> np.ndarray:

@@ -1,17 +1,19 @@
 """Figures of results without a log: cost, modes, a paper's reproduction."""
 
-from itertools import cycle, pairwise
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from continuum_dyn.experiments.cost import Cost
+from continuum_dyn.experiments.cost import PATIENCE, Cost, Price
 from continuum_dyn.experiments.reproduce import Rone2012, Shapes
 from continuum_dyn.modes import Mode, RestModes
 from continuum_dyn.views.figures.backbone import backbone
-from continuum_dyn.views.figures.heading import set_heading
+from continuum_dyn.views.figures.heading import add_note, set_heading
+from continuum_dyn.views.figures.looks import BLUE, COLORS, VERMILION
 from statics.equilibria import shape_of
 from statics.quantities import QUANTITIES
 
@@ -25,11 +27,11 @@ SMALL_PART = 1e-9
 DISK_HEIGHT = 0.09
 """Height of the disks in the picture of a mode, in arm lengths."""
 STYLES = [("-", "o"), ("--", "s"), ("-.", "^"), (":", "D"), ("--", "v"), ("-.", "x"), (":", "+"), ("-", "*")]
-"""Lines and markers that can be told apart in black and white."""
+"""Lines and markers that differ in black and white."""
 LAWS = {
-    "printed": {"ls": "--", "color": "C3", "lw": 1.6, "label": "equations as printed"},
+    "printed": {"ls": "--", "color": VERMILION, "lw": 1.6, "label": "equations as printed"},
     "program": {"ls": "-", "color": "k", "lw": 1.2, "label": "the program"},
-    "exact rod": {"ls": "", "marker": "o", "mfc": "none", "color": "C0", "ms": 7, "label": "exact rod"},
+    "exact rod": {"ls": "", "marker": "o", "mfc": "none", "color": BLUE, "ms": 7, "label": "exact rod"},
 }
 """Line style of each law in a paper's reproduction."""
 LIFTS_CLEARLY = 0.5
@@ -39,31 +41,47 @@ PARTS_CLEARLY = 1.0
 
 
 def cost(measured: Cost) -> Figure:
-    """Tip error against time and work for every method, and against time for every mesh."""
-    figure = Figure(figsize=(12.0, 4.4), layout="constrained")
-    by_time, by_work, by_mesh = figure.subplots(1, 3, width_ratios=[1.0, 1.0, 0.9])
-    by_work.sharey(by_time)
-    methods = list(dict.fromkeys(price.method for price in measured.prices))
-    for method, (line, marker) in zip(methods, cycle(STYLES), strict=False):
-        prices = [price for price in measured.prices if price.method == method]
-        errors = [price.error for price in prices]
-        look = {
-            "ls": line,
-            "marker": marker,
-            "ms": 5,
-            "lw": 2.2 if method == "chain" else 1.2,
-            "label": method,
-        }
-        by_time.loglog([1e3 * price.seconds for price in prices], errors, **look)
-        by_work.loglog([price.segment_evaluations for price in prices], errors, **look)
-    by_time.set(xlabel="time (ms)", ylabel="largest tip error (m)", title="Methods, by time")
-    by_work.set(xlabel="segment evaluations", title="Methods, by work")
-    by_work.legend()
-    _draw_meshes(by_mesh, measured)
-    for axes in (by_time, by_work, by_mesh):
-        axes.grid(visible=True, which="major", lw=0.4, color="0.8")
+    """Tip error against time and work for every method that ran, and against work for every mesh.
+
+    Settings that no other beats in both error and work are ringed: work is the same on every computer.
+    """
+    panels = ("time", "work", "mesh") if measured.meshes else ("time", "work")
+    figure = Figure(figsize=(4.0 * len(panels), 4.4), layout="constrained")
+    axes: dict[str, Any] = dict(zip(panels, figure.subplots(1, len(panels)), strict=True))
+    for number, method in enumerate(dict.fromkeys(price.method for price in measured.prices)):
+        line, marker = STYLES[number % len(STYLES)]
+        look = {"color": COLORS[number % len(COLORS)], "ls": line, "marker": marker, "ms": 5, "label": method}
+        _draw_prices(axes, [p for p in measured.prices if p.method == method], look)
+    rings = {"color": "0.3", "ls": "", "marker": "o", "ms": 10, "mfc": "none", "label": "least work"}
+    _draw_prices(axes, _least_work(measured.prices), rings)
+    axes["time"].set(xlabel="time (ms)", ylabel="largest tip error (um)", title="Methods, by time")
+    axes["work"].set(xlabel="segment evaluations", ylabel="largest tip error (um)", title="Methods, by work")
+    axes["work"].legend()
+    if measured.meshes:
+        _draw_meshes(axes["mesh"], measured)
+    for each in axes.values():
+        each.grid(visible=True, which="major", lw=0.4, color="0.8")
+        each.yaxis.set_major_formatter("{x:g}")
     set_heading(figure, f"{measured.scenario.title}: what accuracy costs")
+    if measured.over_budget:
+        late = (f"{method} at rtol {rtol:.0e}" for method, rtol in measured.over_budget.items())
+        add_note(figure, f"Given up after {PATIENCE:g} s: {', '.join(late)}, and all that is tighter.")
     return figure
+
+
+def _draw_prices(axes: Mapping[str, Any], prices: Sequence[Price], look: Mapping[str, Any]) -> None:
+    errors = [1e6 * price.error for price in prices]
+    axes["time"].loglog([1e3 * price.seconds for price in prices], errors, lw=1.4, **look)
+    axes["work"].loglog([price.segment_evaluations for price in prices], errors, lw=1.4, **look)
+
+
+def _least_work(prices: Sequence[Price]) -> list[Price]:
+    """Those that no other beats in error at its work or less."""
+    found: list[Price] = []
+    for price in sorted(prices, key=lambda p: (p.segment_evaluations, p.error)):
+        if not found or price.error < found[-1].error:
+            found.append(price)
+    return found
 
 
 def modes(found: RestModes) -> Figure:
@@ -135,30 +153,30 @@ def _draw_disks(axes: Any, centres: np.ndarray, theta: np.ndarray, height: float
 
 def _draw_meshes(axes: Any, measured: Cost) -> None:
     """The tip at rest against the exact rod's, on one mesh and extrapolated from two."""
-    axes.set(xlabel="time of an equilibrium (us)", ylabel="tip error at rest (m)", title="Meshes")
-    if not measured.meshes:
-        axes.text(0.5, 0.5, "no exact rod", ha="center", transform=axes.transAxes)
-        return
-    times = [1e6 * mesh.seconds for mesh in measured.meshes]
-    plain = [mesh.tip_error for mesh in measured.meshes]
-    axes.loglog(times, plain, "-o", color="k", ms=5, lw=1.6, label="one mesh")
-    for mesh, place in zip(measured.meshes, zip(times, plain, strict=True), strict=True):
+    axes.set(xlabel="segment evaluations of an equilibrium", ylabel="tip error at rest (um)", title="Meshes")
+    work = [mesh.segment_evaluations for mesh in measured.meshes]
+    plain = [1e6 * mesh.tip_error for mesh in measured.meshes]
+    axes.loglog(work, plain, "-o", color="k", ms=5, lw=1.6, label="segments from disk to disk")
+    for mesh, place in zip(measured.meshes, zip(work, plain, strict=True), strict=True):
         axes.annotate(str(mesh.subsegments), place, xytext=(5, 4), textcoords="offset points", fontsize=8)
-    both = [before + after for before, after in pairwise(times)]
-    limits = [mesh.limit_error or 0.0 for mesh in measured.meshes[1:]]
-    axes.loglog(both, limits, "--s", color="C0", ms=5, lw=1.2, label="from two")
+    both = [before + after for before, after in pairwise(work)]
+    limits = [1e6 * (mesh.limit_error or 0.0) for mesh in measured.meshes[1:]]
+    axes.loglog(both, limits, "--s", color=BLUE, ms=5, lw=1.2, label="extrapolated from two meshes")
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.legend()
+    axes.legend(fontsize=8)
 
 
 def rone2012(found: Rone2012) -> Figure:
     """The shapes of Fig. 3 and 4 by all three laws, and the tip's height against the tension."""
     figure = Figure(figsize=(11.0, 5.6), layout="constrained")
-    axes: dict[str, Any] = figure.subplot_mosaic([["high", "tip"], ["low", "tip"]], width_ratios=[1.25, 1.0])
+    axes: dict[str, Any] = figure.subplot_mosaic(
+        [["high", "tip"], ["low", "tip"]], width_ratios=[1.25, 1.0], height_ratios=[0.75, 1.0]
+    )
     low = [found.unactuated, *(shapes for shapes in found.figure_4 if shapes.tension < LIFTS_CLEARLY)]
     high = [shapes for shapes in found.figure_4 if shapes.tension >= LIFTS_CLEARLY]
     _draw_laws(axes["high"], high, 1e3)
     axes["high"].set(ylabel="y (mm)", title="Shapes of Fig. 4")
+    axes["high"].set_aspect("equal", adjustable="datalim")
     _draw_laws(axes["low"], low, 1e6)
     axes["low"].set(xlabel="x (mm)", ylabel="y (um)", title="Shapes of Fig. 3 and 4 (y stretched)")
     _draw_tip_heights(axes["tip"], found)

@@ -6,7 +6,6 @@ from string import punctuation
 import numpy as np
 
 from continuum_dyn.record import Log
-from continuum_dyn.views.playback.loads import acting_loads
 from continuum_dyn.views.playback.playback import Playback
 from statics.support.plain_text import plain_line
 
@@ -79,8 +78,8 @@ def _reading(playback: Playback) -> str:
         said.append("**Cables:** as wide as their tension at the base; dashed while slack.")
     if playback.moves:
         said.append("**Light grey:** the static equilibrium of the moment's inputs, if the log has it.")
-    said.append("**Thin line at the tip:** its way.")
-    if acting_loads(playback, playback.samples[:1]):
+    said.append("**Thin line at the tip:** its path.")
+    if playback.loads(playback.samples[:1]):
         said.append("**Arrows:** loads on disks.")
     if playback.scenario is None:
         said.append("The log carries no scenario that could be read: loads are not drawn.")

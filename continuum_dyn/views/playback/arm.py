@@ -3,7 +3,8 @@
 import numpy as np
 from rerun_bindings import escape_entity_path_part
 
-from continuum_dyn.views.figures.backbone import backbone, poses
+from continuum_dyn.views.figures.backbone import backbone, disk_reach, poses
+from continuum_dyn.views.figures.loads import ActingLoad
 from continuum_dyn.views.playback.colors import (
     BLACK,
     GREEN,
@@ -16,7 +17,6 @@ from continuum_dyn.views.playback.colors import (
     pack,
 )
 from continuum_dyn.views.playback.drawing import Arrows, Drawn, Lines, every_frame
-from continuum_dyn.views.playback.loads import ActingLoad, acting_loads
 from continuum_dyn.views.playback.measures import Measures
 from continuum_dyn.views.playback.playback import Playback, spread
 from continuum_dyn.views.playback.targets import resting_rows
@@ -44,14 +44,6 @@ MOST_LABELLED = 6
 """Largest number of loads that are labelled; more would hide the arm."""
 
 
-def half_width(playback: Playback) -> float:
-    """Half the drawn width of a disk, m."""
-    arm = playback.log.arm
-    outermost_hole = float(np.abs(arm["hole_offset"]).max(initial=0.0))
-    spacing = playback.columns["length"][0].sum() / playback.columns["disk_x"].shape[1]
-    return 1.2 * outermost_hole or 0.25 * float(spacing)
-
-
 def own_color(playback: Playback, color: int) -> int:
     """The color, or the run's own if several are shown."""
     return int(PALETTE[playback.rank]) if playback.name else color
@@ -60,7 +52,7 @@ def own_color(playback: Playback, color: int) -> int:
 def moving_parts(playback: Playback, rows: np.ndarray, measures: Measures) -> dict[str, Drawn]:
     """Parts that change with time, by entity, at those rows."""
     centre, across = poses(playback.columns, rows)
-    reach = half_width(playback) * across
+    reach = disk_reach(playback.log.arm, playback.columns) * across
     bars = np.stack([centre - reach, centre + reach], axis=2)
     shown = 1 + spread(centre.shape[1] - 1, MOST_DISKS)
     parts: dict[str, Drawn] = {
@@ -82,7 +74,7 @@ def still_parts(playback: Playback) -> dict[str, Drawn]:
     tip = np.stack([playback.columns["disk_x"][rows, -1], playback.columns["disk_y"][rows, -1]], axis=-1)
     parts: dict[str, Drawn] = {"tip_trace": Lines(tip[None], own_color(playback, PURPLE), 1.5, 16.0)}
     if "base_x" not in playback.columns:
-        base = half_width(playback) * np.array([[[0.0, -1.0], [0.0, 1.0]]])
+        base = disk_reach(playback.log.arm, playback.columns) * np.array([[[0.0, -1.0], [0.0, 1.0]]])
         parts["base"] = Lines(base, BLACK, 4.0, 25.0)
     return {playback.at("arm", name): drawn for name, drawn in parts.items()}
 
@@ -114,18 +106,18 @@ def _core(playback: Playback, rows: np.ndarray, measures: Measures) -> dict[str,
 def _cables(
     playback: Playback, rows: np.ndarray, measures: Measures, centre: np.ndarray, across: np.ndarray
 ) -> dict[str, Drawn]:
-    """Each cable through its holes to its anchor: as wide as its tension, and dashed while it has none."""
+    """Each cable from its start to its anchor: as wide as its tension, and dashed while it has none."""
     arm = playback.log.arm
     parts: dict[str, Lines] = {}
     cables = zip(
         playback.log.cables,
         arm["hole_offset"],
-        arm["anchor"],
+        playback.log.bare_disks,
         distinct_colors(len(playback.log.cables)),
         strict=True,
     )
-    for number, (name, offset, anchor, color) in enumerate(cables):
-        holes = (centre + offset[:, None] * across)[:, : anchor + 1]
+    for number, (name, offset, bare, color) in enumerate(cables):
+        holes = (centre + offset[:, None] * across)[:, bare]
         tension = playback.columns["tension"][rows, number]
         taut, drawn = tension > 0.0, own_color(playback, int(color))
         entity = f"cables/{escape_entity_path_part(plain_line(name))}"
@@ -149,7 +141,7 @@ def _dash(holes: np.ndarray) -> np.ndarray:
 def _loads(playback: Playback, rows: np.ndarray, measures: Measures) -> dict[str, Drawn]:
     """Forces as straight arrows, moments as round ones, and what they are, unless they are many."""
     parts: dict[str, Drawn] = {}
-    loads, color = acting_loads(playback, rows), own_color(playback, GREEN)
+    loads, color = playback.loads(rows), own_color(playback, GREEN)
     for number, load in enumerate(loads, start=1):
         if load.force.any():
             vector = FORCE_REACH * measures.length / measures.force * load.force

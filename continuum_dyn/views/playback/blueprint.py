@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 
 from continuum_dyn.views.playback import heat_map
-from continuum_dyn.views.playback.about import ending
 from continuum_dyn.views.playback.colors import WHITE
 from continuum_dyn.views.playback.drawing import Drawn, flip_y
-from continuum_dyn.views.playback.legend import extent
+from continuum_dyn.views.playback.legend import extent, is_tall
 from continuum_dyn.views.playback.playback import SHORTEST_PLAYBACK, Playback
 from continuum_dyn.views.playback.plots import Plot, value_range
 from continuum_dyn.views.rerun_core.layout import (
@@ -36,7 +35,7 @@ def blueprint(
     plots: Mapping[str, Sequence[Plot]],
     growing: bool = False,
 ) -> Layout:
-    """The arm above its curvature and the text about it, plots beside them.
+    """The arm above or, if it is tall, beside its curvature and the text about it, plots beside them.
 
     Bounds and ranges are those of all that is shown. Of what is ``growing`` the latest moment is shown, the
     arm with room around it, and ranges are the viewer's to choose.
@@ -44,7 +43,11 @@ def blueprint(
     arm = _arm(playbacks, drawn, ROOM_TO_GROW if growing else MARGIN)
     curvature = _plot(playbacks, "curvature", plots["curvature"], growing)
     below = Container("tabs", [*_heat_maps(playbacks), *_words(playbacks), curvature])
-    left = Container("vertical", [arm, below], [3, 2])
+    left = (
+        Container("horizontal", [arm, below], [2, 3])
+        if is_tall(drawn)
+        else Container("vertical", [arm, below], [3, 2])
+    )
     others = {name: each for name, each in plots.items() if name != "curvature"}
     beside = [_plot(playbacks, name, each, growing) for name, each in others.items()]
     right = Container("vertical", beside, [*map(_height, others.values())])
@@ -65,7 +68,7 @@ def words_alone(entity: str) -> Layout:
 
 def _arm(playbacks: Sequence[Playback], drawn: Mapping[str, Drawn], room: float) -> View:
     name = (
-        ending(playbacks[0].log)
+        f"{playbacks[0].log.title}: {playbacks[0].log.outcome.replace('_', ' ')}".removeprefix(": ")
         if len(playbacks) == 1
         else " and ".join(playback.name for playback in playbacks)
     )
@@ -87,7 +90,12 @@ def _heat_maps(playbacks: Sequence[Playback]) -> list[View]:
     (left, right), (bottom, top) = heat_map.SHOWN
     look = _plane((left, right), (-top, -bottom))
     return [
-        View("2D", playback.at("curvature"), _tab(playback, "curvature over time"), look)
+        View(
+            "2D",
+            playback.at("curvature"),
+            _tab(playback, f"curvature over {'time' if playback.moves else 'points'}"),
+            look,
+        )
         for playback in playbacks
     ]
 

@@ -11,8 +11,8 @@ from continuum_dyn.views.rerun_core.stream import Stream
 WIDTH, HEIGHT = 900, 300
 """Width and height of the picture, pixels."""
 BOTTOM, TOP = -float(HEIGHT), 0.0
-"""Rerun's pictures hang down from the origin."""
-SHOWN = ((-110.0, WIDTH + 50.0), (BOTTOM - 60.0, TOP + 20.0))
+"""Rerun draws pictures downwards from the origin."""
+SHOWN = ((-150.0, WIDTH + 50.0), (BOTTOM - 60.0, TOP + 20.0))
 """Ranges of the view: from left to right, from bottom to top."""
 MOST_TICKS = 5
 RED_GREEN_BLUE, BYTES = 2, 6
@@ -53,9 +53,10 @@ def _time_axis(playback: Playback) -> Lines:
 
 def _segment_axis(segments: int) -> Lines:
     numbers = np.arange(1, segments + 1, -(-segments // MOST_TICKS))
+    labels = [f"segment {numbers[0]}", *map(str, numbers[1:])]
     y = BOTTOM + (numbers - 0.5) * HEIGHT / segments
-    strips = np.stack([np.tile([-100.0, 0.0], (len(y), 1)), np.stack([y, y], axis=-1)], axis=-1)
-    return Lines(strips, BLACK, 0.0, 2.0, labels=[f"segment {number}" for number in numbers])
+    strips = np.stack([np.tile([-140.0, 0.0], (len(y), 1)), np.stack([y, y], axis=-1)], axis=-1)
+    return Lines(strips, BLACK, 0.0, 2.0, labels=labels)
 
 
 def cursor(playback: Playback, rows: np.ndarray) -> Lines:

@@ -10,6 +10,8 @@ from continuum_dyn.views.playback.drawing import Drawn, Lines, corners
 from continuum_dyn.views.playback.measures import Measures
 from continuum_dyn.views.playback.playback import Playback
 
+TALL = 1.5
+"""Height over width of a drawing from which on its legend takes two lines."""
 SHADES = 41
 """Number of colours in the scale of curvature."""
 
@@ -20,14 +22,28 @@ def extent(drawn: Mapping[str, Drawn]) -> tuple[np.ndarray, np.ndarray]:
     return both[:, 0].min(axis=0), both[:, 1].max(axis=0)
 
 
+def is_tall(drawn: Mapping[str, Drawn]) -> bool:
+    """Whether what is drawn is much higher than wide."""
+    (left, bottom), (right, top) = extent(drawn)
+    return bool(top - bottom > TALL * (right - left))
+
+
 def legend(drawn: Mapping[str, Drawn], playbacks: Sequence[Playback], measures: Measures) -> dict[str, Drawn]:
     """Entities below the drawing. The view has no axes: hence the scale of lengths."""
     (left, bottom), (right, top) = extent(drawn)
     size = max(right - left, top - bottom)
-    right = left + size
     y = bottom - 0.12 * size
-    parts: dict[str, Drawn] = {"arm/scale": _length_scale(left, y, size)}
-    parts |= _curvature_scale(right - 0.45 * size, right, y, measures.curvature)
+    if is_tall(drawn):
+        middle, width = 0.5 * (left + right), 0.4 * size
+        left = middle - 0.5 * width
+        parts: dict[str, Drawn] = {"arm/scale": _length_scale(left, y, size)}
+        y -= 0.1 * size
+        parts |= _curvature_scale(left, left + width, y, measures.curvature)
+        y -= 0.04 * size
+    else:
+        right = left + size
+        parts = {"arm/scale": _length_scale(left, y, size)}
+        parts |= _curvature_scale(right - 0.45 * size, right, y, measures.curvature)
     for playback in playbacks if len(playbacks) > 1 else ():
         y -= 0.09 * size
         strip = np.array([[[left, y], [left + 0.2 * size, y]]])
@@ -41,7 +57,7 @@ def _length_scale(left: float, y: float, size: float) -> Lines:
     steps = np.array([1.0, 2.0, 5.0]) * 10.0 ** np.floor(np.log10(size / 3))
     length = steps[np.sum(steps[1:] <= size / 3)]
     bar = np.array([[[left, y], [left + length, y]]])
-    return Lines(bar, BLACK, 2.0, 5.0, labels=[f"{length:g} m"])
+    return Lines(bar, BLACK, 2.0, 5.0, labels=[f"{1e3 * float(length):g} mm"])
 
 
 def _curvature_scale(left: float, right: float, y: float, most: float) -> dict[str, Drawn]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.views.playback.loads import acting_loads
 from continuum_dyn.views.playback.playback import Playback
 
 LEAST = 1e-300
@@ -25,7 +24,7 @@ class Measures:
 
 def measures_of(playbacks: Sequence[Playback]) -> Measures:
     """The largest of each quantity in all playbacks."""
-    loads = [load for playback in playbacks for load in acting_loads(playback, playback.samples)]
+    loads = [load for playback in playbacks for load in playback.loads(playback.samples)]
     return Measures(
         curvature=_largest([playback.columns["curvature"] for playback in playbacks]),
         tension=_largest([playback.columns["tension"] for playback in playbacks]),

@@ -8,6 +8,7 @@ import numpy as np
 from continuum_dyn.record import Log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.scenario.scenario import Scenario
+from continuum_dyn.views.figures.loads import ActingLoad, acting_loads
 from statics.errors import LogError
 from statics.support.plain_text import plain_line
 
@@ -60,6 +61,10 @@ class Playback:
     def samples(self) -> np.ndarray:
         """Rows that are plotted."""
         return spread(len(self.times), MOST_SAMPLES)
+
+    def loads(self, rows: np.ndarray) -> list[ActingLoad]:
+        """The loads on disks at those rows; none if the log holds no scenario."""
+        return acting_loads(self.scenario, self.columns, rows)
 
     def at(self, *path: str) -> str:
         """The entity of that path, with the run's name after its root if several runs are shown."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from continuum_dyn.views.figures.log_series import Input, inputs_of
 from continuum_dyn.views.playback.colors import GREY, PALETTE, distinct_colors, shades
 from continuum_dyn.views.playback.drawing import moments
 from continuum_dyn.views.playback.playback import Playback, spread
@@ -13,12 +14,14 @@ from continuum_dyn.views.rerun_core.stream import Stream
 from statics.quantities import QUANTITIES
 
 MOST_SERIES = 8
+MILLI = 1e3
+"""Number of mm in a m, and of mJ in a J: fixed, so that a log that grows keeps its units."""
 STORED = ("kinetic_energy", "elastic_energy", "gravity_energy")
 LEDGER = ("input_work", "dissipated_energy")
 POWERS = ("input_power", "dissipated_power")
 LINE_WIDTH, THIN = 1.5, 0.8
 MIN_AND_MAX = 5
-"""How rerun draws what is finer than a pixel: the mean of fast oscillations would look like rest."""
+"""Aggregation of samples finer than a pixel: the mean of fast oscillations would look like rest."""
 
 
 @dataclass(frozen=True)
@@ -41,20 +44,25 @@ class Plot:
     series: Sequence[Series]
 
 
+@np.errstate(over="ignore")  # a log may hold any finite numbers, and some have no mm
 def plots_of(playback: Playback) -> dict[str, Plot]:
     """Plots by the last part of their entity, without those that the log has no data for."""
     columns = playback.columns
+    inputs = inputs_of(playback.log, columns)
     tension = [Series(*each) for each in zip(playback.log.cables, columns["tension"].T, strict=True)]
     plots = {
         "tension": Plot(QUANTITIES["tension"].label, tension),
+        "cable_displacement": Plot("cable displacement (mm)", _lengths(inputs, "cable_displacement")),
         "load_factor": Plot(QUANTITIES["load_factor"].label, _load_factors(columns)),
-        "tip_x": Plot("tip x (m)", _tip(playback, "disk_x")),
-        "tip_y": Plot("tip y (m)", _tip(playback, "disk_y")),
-        "energy": Plot("energy since the start (J)", _since_start(playback)),
+        "base": Plot(_base_title(inputs), _lengths(inputs, "base_x")),
+        "base_theta": Plot(QUANTITIES["base_theta"].label, _angles(inputs)),
+        "tip_x": Plot("tip x (mm)", _tip(playback, "disk_x")),
+        "tip_y": Plot("tip y (mm)", _tip(playback, "disk_y")),
+        "energy": Plot("energy since the start (mJ)", _since_start(playback)),
         "power": Plot(
             "power (W)", [Series(_words(name), columns[name]) for name in POWERS if name in columns]
         ),
-        "step_size": Plot("step of the solver, log10 of s", _steps(columns)),
+        "step_size": Plot("log10 of the solver's step (s)", _steps(columns)),
         "curvature": Plot(QUANTITIES["curvature"].label, _curvature(columns)),
     }
     return {name: plot for name, plot in plots.items() if plot.series}
@@ -69,13 +77,28 @@ def _load_factors(columns: Mapping[str, np.ndarray]) -> list[Series]:
     return [Series(f"load {number}", values) for number, values in enumerate(factors, start=1)]
 
 
+def _lengths(inputs: Mapping[str, Input], name: str) -> list[Series]:
+    """Inputs that are lengths, mm."""
+    lines = inputs[name].lines if name in inputs else {}
+    return [Series(words, MILLI * values) for words, values in lines.items()]
+
+
+def _base_title(inputs: Mapping[str, Input]) -> str:
+    return f"{inputs['base_x'].words if 'base_x' in inputs else 'base'} (mm)"
+
+
+def _angles(inputs: Mapping[str, Input]) -> list[Series]:
+    lines = inputs["base_theta"].lines if "base_theta" in inputs else {}
+    return [Series(words, values) for words, values in lines.items()]
+
+
 def _curvature(columns: Mapping[str, np.ndarray]) -> list[Series]:
     curvature = columns["curvature"].T
     return [Series(f"segment {n + 1}", curvature[n]) for n in spread(len(curvature), MOST_SERIES)]
 
 
 def _since_start(playback: Playback) -> list[Series]:
-    """Changes, so that the ledger can be read: input work is what is stored and dissipated.
+    """Changes (mJ), so that the ledger can be read: input work is what is stored and dissipated.
 
     Beside other runs, what is stored is shown as a whole.
     """
@@ -84,7 +107,7 @@ def _since_start(playback: Playback) -> list[Series]:
     if playback.name and stored:
         ledger = {name: columns[name] for name in LEDGER if name in columns}
         columns = {"stored_energy": np.sum(stored, axis=0), **ledger}
-    return [Series(_words(name), values - values[0]) for name, values in columns.items()]
+    return [Series(_words(name), MILLI * (values - values[0])) for name, values in columns.items()]
 
 
 def _steps(columns: Mapping[str, np.ndarray]) -> list[Series]:
@@ -95,15 +118,15 @@ def _steps(columns: Mapping[str, np.ndarray]) -> list[Series]:
 
 
 def _tip(playback: Playback, name: str) -> list[Series]:
-    """The tip, its equilibrium under the moment's inputs and, for a single run, the band of settling."""
-    series = [Series("tip", playback.columns[name][:, -1])]
+    """The tip (mm), its equilibrium under the moment's inputs and, for a single run, the band of settling."""
+    series = [Series("tip", MILLI * playback.columns[name][:, -1])]
     resting = resting_rows(playback.log) if playback.moves else np.array([-1])
     if not (resting >= 0).any():
         return series
-    target = np.where(resting >= 0, playback.log.equilibria[name][resting, -1], np.nan)
+    target = MILLI * np.where(resting >= 0, playback.log.equilibria[name][resting, -1], np.nan)
     series.append(Series("static target", target))
     if not playback.name and playback.scenario is not None and playback.scenario.study.settles:
-        within = playback.scenario.settled_within
+        within = MILLI * playback.scenario.settled_within
         series += [Series("settled band", target + way, is_bound=True) for way in (-within, within)]
     return series
 

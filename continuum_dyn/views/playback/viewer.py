@@ -25,6 +25,8 @@ VIEWER = (
 QUIET = {"CI": "1", "TELEMETRY_ENABLED": "false"}
 """Environment in which rerun sends no statistics of its use: it has no other switch but one for good."""
 
+INSTEAD = "To look at it in a browser add --web; to keep a recording for another computer, --save FILE.rrd"
+"""Advice where no window can be opened."""
 START_TIME = 20.0
 """Longest time for a server to answer, s."""
 
@@ -45,11 +47,17 @@ def show(logs: Sequence[Log]) -> None:
         with _start(["--port", "auto", str(path)]) as viewer:
             _, words = viewer.communicate()
         if viewer.returncode:
-            raise LogError(f"the rerun viewer cannot run here: {_last_line(words, viewer.returncode)}")
+            raise LogError(f"{_why_no_window(words, viewer.returncode)} {INSTEAD}")
+
+
+def _why_no_window(words: str, status: int) -> str:
+    if any(name in words for name in ("WAYLAND_DISPLAY", "DISPLAY", "EventLoop")):
+        return "there is no display here to open the rerun viewer on."
+    return f"the rerun viewer cannot run here: {_last_line(words, status).rstrip('.')}."
 
 
 def serve(logs: Sequence[Log], tell: Callable[[str], None]) -> None:
-    """Show logs to browsers on this computer until Ctrl-C; ``tell`` is given the address to open.
+    """Serve logs to browsers on this computer until Ctrl-C; ``tell`` receives the address to open.
 
     Raises ``LogError`` if the server cannot run here.
     """

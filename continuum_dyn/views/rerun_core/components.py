@@ -147,7 +147,7 @@ def arrow(kind: pa.DataType, values: Any) -> pa.Array:
 
 
 def parts(values: pa.Array, counts: np.ndarray) -> pa.Array:
-    """The values in lists of so many each."""
+    """The values in lists of this length."""
     ends = np.cumsum([0, *counts], dtype=np.int32)
     return pa.Array.from_buffers(pa.list_(values.type), len(counts), _buffers(ends), children=[values])
 

@@ -33,7 +33,7 @@ class Stream:
     def send(
         self, entity: str, at: Moments, kind: str, counts: np.ndarray | None = None, **columns: Any
     ) -> None:
-        """Send columns that change with time: so many rows at each of the moments, or one."""
+        """Send columns that change with time: a number of rows at each moment, or one."""
         counts = np.ones(len(at.times), dtype=int) if counts is None else counts
         rows = {name: parts(values, counts) for name, values in _described(kind, columns).items()}
         core.send_arrow_chunk(entity, {at.timeline: moments(at.times, at.moves)}, rows, self.native)

@@ -21,13 +21,18 @@ def _slope_names(cable: CableSymbols) -> list[str]:
 
 
 def carry_slopes(trace: Trace, forces: SceneForces, coupled: list[CableSymbols]) -> Carried:
-    """Carry the slopes from a span's end, where they are known, to its start, where the hole is."""
+    """Carry the slopes from a span's end, where they are known, to the hole at its start.
+
+    A span that the cable does not pass has the slopes of a hole that changes no tension.
+    """
     carried: Carried = {}
+    start = symbol("starts_span")
     for cable in coupled if forces.span is not None else []:
         for name in _slope_names(cable):
             here, before = symbol(name), symbol(f"{name}_inside")
+            unchanged = 1.0 if name.startswith("hole_factor") else 0.0
             value = trace.name(f"{name}_there", cable.passes * here + (1 - cable.passes) * before)
-            carried[str(before)] = (0.0, value)
+            carried[str(before)] = (unchanged, start * unchanged + (1 - start) * value)
     return carried
 
 

@@ -162,7 +162,7 @@ def _invert_pivot(
 
     ``terms`` are those that add up in each entry of the diagonal: their sizes say whether the pivot is
     singular. A pivot of a matrix that may be indefinite is made positive, unless ``keep_sign`` is given.
-    Nothing is counted of a definite matrix, nor of an unsymmetric one, where the count would mean nothing.
+    A definite matrix has nothing to count, and for an unsymmetric one the count has no meaning.
     """
     dofs = A.shape[0]
     if weights.definite or not symmetric:

@@ -1,4 +1,4 @@
-"""Forces in the names of the chain: how an outward pass leaves them, and how inward passes read them."""
+"""Forces in the names of the chain: written by an outward pass, read by inward passes."""
 
 from typing import Any
 

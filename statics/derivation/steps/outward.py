@@ -1,11 +1,11 @@
 """Outward pass over one segment: the far disk's pose from the near disk's (Rone 2012, Eq. 10), and loads.
 
-With R the rotation of the segment's near disk and d(q) its far end seen from there,
+With R the rotation of the segment's near disk and d(q) its far end in the axes of that disk,
 
     p = p0 + R d,   dp = X dp0 + S dq,   S = [R d_q; phi_q],   X: dp0 plus dtheta0 z x R d
 
-Where several segments make a span from disk to disk, a cable joins the poses of the span's two ends. A point
-of the core that carries mass has a reach of its own from the near disk, and nothing beyond hangs on it.
+If a span from disk to disk has several segments, a cable connects the poses of the span's two ends. A point
+of the core with mass has its own reach from the near disk, and nothing beyond depends on it.
 
 Functions here name the geometry in a trace. ``carried`` maps a name to its value before the first segment
 and after this one; ``known`` maps the symbols in which forces are written to their names in the chain.
@@ -144,7 +144,7 @@ def _clearance(trace: Trace, forces: SceneForces, known: Known) -> tuple[float, 
 
 
 def clearance_step(forces: SceneForces) -> Step:
-    """Outward pass: the clearance from a geometric limit, wherever the base is."""
+    """Outward pass: the clearance from a geometric limit, for any pose of the base."""
     trace, forces = Trace(), replace(forces, inputs=())
     carried, known = name_poses(trace, forces)
     return Step(
@@ -191,7 +191,7 @@ def _potential(trace: Trace, forces: SceneForces, known: Known) -> Carried:
 
 
 def sum_along(trace: Trace, totals: Mapping[str, Any], of_drives: Mapping[str, Any]) -> Carried:
-    """Results of a pass that sums each account along the arm, beginning with what the cables' drives add."""
+    """Results of a pass that sums each account along the arm, starting with the cables' drives."""
     return {
         name: (of_drives.get(name, 0.0), symbol(name) + trace.name(f"added_{name}", value))
         for name, value in totals.items()

@@ -1,7 +1,7 @@
 """Source text, for generated kernels, of the inverse of a pivot that may be indefinite, made positive.
 
-A pivot counts as singular in the size of the terms that add up in it, never in that of other pivots: along an
-arm whose stiffness varies by many orders of magnitude a soft span's pivot is tiny, and right.
+A pivot counts as singular relative to the terms that add up in it, never relative to other pivots: in an arm
+whose stiffness varies by many orders of magnitude, the pivot of a soft span is tiny but correct.
 """
 
 SINGULAR, TINY = 1e-9, 1e-30

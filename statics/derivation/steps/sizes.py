@@ -1,4 +1,4 @@
-"""Sizes of the forces that meet in each row of the residual: in units of these it must be small at rest.
+"""Sizes of the forces that contribute to each row of the residual, which must be small relative to them.
 
 An outward pass names the sizes at each site: what its pairs add, one by one, and what rounding of the
 coordinates and of cable lengths can leave. An inward pass adds them up as the residual's own pass adds up the
@@ -18,7 +18,7 @@ from statics.derivation.trace import Trace, matrix_by_name, symbol
 from statics.derivation.virtual_work import Forces, SceneForces
 
 ROUNDED = 1e-6
-"""Part of a force that its argument's rounding changes, times what is taken for rounding: 1e-14 in all."""
+"""Factor on the change of a force by rounding of its argument, which makes it 1e-14 in all."""
 SIZE = ("size_x", "size_y", "size_theta")
 """Names of the size of the wrench that the residual's pass carries."""
 
@@ -55,7 +55,7 @@ def _driven_by_length(forces: SceneForces) -> list[int]:
 
 
 def _by_length(forces: SceneForces, number: int, row: int) -> Any:
-    """Size of what a rounded length changes of the tension of a cable that holds it."""
+    """Change of the tension of a length-driven cable by rounding of its length."""
     cable = next(cable for cable in forces.coupled if cable.number == number)
     return ROUNDED * symbol(f"held_{number}") * sp.Abs(cable_pull_by_name(forces, cable)[row])
 

@@ -1,10 +1,11 @@
-"""Forces and moments on disks at the rows of a playback, from the scenario in its log."""
+"""Forces and moments on disks at rows of a log, from the scenario in it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from continuum_dyn.views.playback.playback import Playback
+from continuum_dyn.scenario.scenario import Scenario
 from statics.effects import DiskLoad, DiskLoads
 
 
@@ -17,22 +18,21 @@ class ActingLoad:
     moment: np.ndarray
 
 
-def acting_loads(playback: Playback, rows: np.ndarray) -> list[ActingLoad]:
+def acting_loads(
+    scenario: Scenario | None, columns: Mapping[str, np.ndarray], rows: np.ndarray
+) -> list[ActingLoad]:
     """The loads of the scene, turned with their disk if they follow it, times their factor if driven."""
-    if playback.scenario is None:
+    if scenario is None:
         return []
     given = [
-        load
-        for effect in playback.scenario.scene.effects
-        if isinstance(effect, DiskLoads)
-        for load in effect.loads
+        load for effect in scenario.scene.effects if isinstance(effect, DiskLoads) for load in effect.loads
     ]
     numbers = np.cumsum([load.driven for load in given]) - 1
-    return [_acting(playback, rows, load, int(number)) for load, number in zip(given, numbers, strict=True)]
+    return [_acting(columns, rows, load, int(number)) for load, number in zip(given, numbers, strict=True)]
 
 
-def _acting(playback: Playback, rows: np.ndarray, load: DiskLoad, number: int) -> ActingLoad:
-    columns, disk = playback.columns, load.disk - 1
+def _acting(columns: Mapping[str, np.ndarray], rows: np.ndarray, load: DiskLoad, number: int) -> ActingLoad:
+    disk = load.disk - 1
     factor = columns["load_factor"][rows, number] if load.driven else np.ones(len(rows))
     theta = columns["disk_theta"][rows, disk] if load.follower else np.zeros(len(rows))
     along, across = load.force
