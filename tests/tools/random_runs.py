@@ -16,10 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from campaign import Campaign, numbers_and_seed
-from click.testing import Result
 from log_claims import check, check_rest, check_same_motion
 from random_structures import scenario
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from continuum_dyn.cli import app
 from continuum_dyn.record import Log, read_log
