@@ -135,14 +135,14 @@ class ChainStepper(Stepper):
     def _advance(self, rows: slice) -> tuple[int, int]:
         """Steps within one span from the first of these rows on: how many, and how they ended."""
         tableau = self.tableau if self.knows_acceleration else SDIRK4
-        coefficients = tableau.a, tableau.c, tableau.error_weights, tableau.predictor
         ended, taken, self.next_step, self.rate, rejected, iterations = runge_kutta.advance(
             self.kernel.passes,
             self.spans[self.span].end,
             self.next_step,
+            self._longest_step,
             self.rate,
             tuple(column[rows] for column in self.records),
-            (*coefficients, self.lasting, self.slip_speed, self._longest_step),
+            (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, self.lasting, self.slip_speed),
             tableau.order,
             self.tolerance,
             self._arm,

@@ -20,7 +20,7 @@ Arguments travel in groups:
 
 - ``arm``: pieces of the inputs' profiles, segment table, disk table;
 - ``method``: a, c, error weights, predictor of the tableau; ``lasting``, the time (s) for which an error of
-  the rates is taken to last; ``slip_speed`` (m/s), infinite without friction; the longest step (s);
+  the rates is taken to last; ``slip_speed`` (m/s), infinite without friction;
 - ``stages``: q, u, w, shape (stages, n, dofs);
 - ``workspace``: chain; six arrays like q, shape (6, n, dofs); scalars;
 - ``records``: times, states, accelerations (rows, n, dofs), powers (rows, 3, 2): row r is the end of step r,
@@ -51,7 +51,7 @@ from statics.kernels.slots import (
 from statics.passes.search import copy
 
 Records = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, float, float]
+Method = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, float]
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 MOST_ITERATIONS = 8
@@ -171,7 +171,7 @@ def step_once(
     stage's. Returns the error (m; infinite if a stage did not converge), the rate of convergence, and the
     Newton iterations.
     """
-    a, c, error_weights, predictor, lasting, slip_speed, _ = method
+    a, c, error_weights, predictor, lasting, slip_speed = method
     stage_q, stage_u, stage_w = stages
     chain, work, scalars = workspace
     count, n, dofs = stage_w.shape
@@ -235,6 +235,7 @@ def advance(
     passes: MotionPasses,
     t_bound: float,
     h: float,
+    longest: float,
     rate: float,
     records: Records,
     method: Method,
@@ -244,6 +245,7 @@ def advance(
 ) -> tuple[int, int, float, float, int, int]:
     """Steps from row 0 of the records until they are full or ``t_bound`` (s) is reached.
 
+    The first is tried with size ``h``, and none is longer than ``longest``, s.
     A step that leaves the arm at a geometric limit or not finite is taken only as the first of its batch,
     so that the ones before it are not lost with it. Returns how it ended, the steps taken, the next step's
     size, the rate of convergence, the rejected steps, and the Newton iterations.
@@ -263,7 +265,7 @@ def advance(
             return FINISHED, taken, h, rate, rejected, iterations
         if h < 16.0 * 2.2e-16 * abs(t) or h < 1e-300:
             return TOO_SMALL, taken, h, rate, rejected, iterations
-        h = min(h, method[6])
+        h = min(h, longest)
         reaches = h >= 0.99 * left
         step = left if reaches else min(h, 0.5 * left)
         copy(accelerations[taken], stages[2][0])

@@ -17,7 +17,7 @@ from continuum_dyn.record import Log, StreamedLog, read_log, write_log
 from continuum_dyn.record.logged_scenario import logged_scenario
 from continuum_dyn.record.resuming import resumption_of
 from continuum_dyn.record.writing import columns_of
-from continuum_dyn.scenario.intervals import cut_into_intervals, inputs_at
+from continuum_dyn.scenario.intervals import cut_into_intervals
 from continuum_dyn.scenario.profiles import Sine
 from continuum_dyn.scenario.solver import Method, Solver
 from continuum_dyn.scenario.studies import MotionStudy
@@ -140,8 +140,9 @@ def test_resumed_motion_is_as_exact_as_the_unbroken_one_in_work_and_dissipation_
     exact = simulate(replace(scenario, solver=Solver("chain", rtol=1e-10, atol=1e-12))).trajectory
     assert exact is not None
     for method, rtol in itertools.product(methods, (1e-3, 1e-5, 1e-7)):
-        tolerances = {} if method == "midpoint" else {"rtol": rtol, "atol": 1e-3 * rtol}
-        run = simulate(replace(scenario, solver=Solver(method, **tolerances)))
+        tolerances = Solver(method, rtol=rtol, atol=1e-3 * rtol)
+        solver = Solver(method) if method == "midpoint" else tolerances
+        run = simulate(replace(scenario, solver=solver))
         assert run.trajectory is not None
         assert run.solver is not None
         step = run.solver.tolerance(scenario.scene.arm.total_length)

@@ -16,10 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from campaign import Campaign, numbers_and_seed
-from click.testing import Result
 from log_claims import check, check_rest, check_same_motion
 from random_structures import scenario
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from continuum_dyn.cli import app
 from continuum_dyn.record import Log, read_log
@@ -64,7 +63,7 @@ def outcome_of(seed: int, number: int, folder: Path) -> list[str]:
         return [f"run refused: {_reason(result, file)}"]
     record = json.loads(result.stdout, parse_constant=_refuse)
     assert result.exit_code == Outcome(record["outcome"]).exit_status
-    path = folder / "scene.h5"
+    path = Path(record["log"])
     assert invoke("validate", path).exit_code == 0, invoke("validate", path).stdout
     assert invoke("info", path).exit_code == 0
     log = read_log(path)
@@ -99,9 +98,10 @@ def compare_with_another_method(file: Path, log: Log, folder: Path) -> list[str]
     """Hold a motion against that by a method of SciPy's; says so if there was one to compare."""
     if not (log.trajectory and log.outcome.answered) or "accuracy" in logged_scenario(log).text:
         return []
-    if invoke("run", file, "--out", folder / "other", *OTHER_METHOD, "--json").exit_code != 0:
+    result = invoke("run", file, "--out", folder / "other", *OTHER_METHOD, "--json")
+    if result.exit_code != 0:
         return []
-    check_same_motion(log, read_log(folder / "other" / file.with_suffix(".h5").name))
+    check_same_motion(log, read_log(Path(json.loads(result.stdout)["log"])))
     return ["compared with another method"]
 
 
@@ -119,15 +119,15 @@ def main() -> int:
     """Exit status: 1 if any failed."""
     numbers, seed = numbers_and_seed(__doc__, 100)
     warnings.simplefilter("error")
-    with tempfile.TemporaryDirectory() as folder:
 
-        def attempt(number: int) -> list[str]:
+    def attempt(number: int) -> list[str]:
+        with tempfile.TemporaryDirectory() as folder:
             return outcome_of(seed, number, Path(folder))
 
-        def describe(number: int) -> str:
-            return scenario(seed, number).text
+    def describe(number: int) -> str:
+        return scenario(seed, number).text
 
-        return int(Campaign("scenario", attempt, describe, SECONDS, MEMORY, REPORTED).run(numbers, seed) > 0)
+    return int(Campaign("scenario", attempt, describe, SECONDS, MEMORY, REPORTED).run(numbers, seed) > 0)
 
 
 if __name__ == "__main__":
