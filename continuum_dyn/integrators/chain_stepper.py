@@ -128,6 +128,8 @@ class ChainStepper(Stepper):
     def _longest_step(self) -> float:
         """Longest step (s) in the current span: a stiff arm follows a slow drive without an error to see."""
         amplitude, frequency = self.spans[self.span].pieces[:, 3:5].T
+        if not amplitude.any():
+            return np.inf
         slow = frequency[(amplitude != 0.0) & (frequency <= self.frequency)]
         fastest = float(np.max(slow, initial=0.0))
         return DRIVE_STEP / fastest if fastest > 0.0 else np.inf

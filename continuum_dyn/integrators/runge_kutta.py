@@ -60,7 +60,7 @@ STAGE_PART = 0.02
 """Largest error of a stage's equations, over the tolerance, and of its rates, over the slip speed."""
 ROOT_5 = math.sqrt(5.0)
 LEAST_FALL = 0.03
-"""Smallest ratio of one step's error estimate to that of the step before that is believed."""
+"""Smallest ratio of an error estimate to the one expected: a lower estimate may pass through zero."""
 SAFETY, MOST_GROWTH, MOST_SHRINK = 0.9, 5.0, 0.2
 
 GOING_ON, FINISHED, TOO_SMALL, NO_ROOM = 0, 1, 2, 3
@@ -222,11 +222,9 @@ def shrinkage(part: float, order: int) -> float:
 def growth(part: float, last_part: float, order: int) -> float:
     """Factor for the step after one whose error was ``part`` of the tolerance, after one of ``last_part``.
 
-    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds. An estimate that
-    falls suddenly may be passing through zero, and is believed in part.
+    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds.
     """
-    believed = max(part, LEAST_FALL * last_part)
-    factor = SAFETY * believed ** (-0.7 / order) * last_part ** (0.3 / order)
+    factor = SAFETY * part ** (-0.7 / order) * last_part ** (0.3 / order)
     return min(MOST_GROWTH, max(MOST_SHRINK, factor))
 
 
@@ -257,7 +255,7 @@ def advance(
     stages = (np.empty(shape), np.empty(shape), np.empty(shape))
     workspace = (np.empty((n, passes.chain_columns)), np.empty((6, n, dofs)), np.empty(SCALARS))
     taken, rejected, iterations = 0, 0, 0
-    last_part = 1.0
+    last_part, last_step = 1.0, 0.0
     while taken < len(times) - 1:
         t = times[taken]
         left = t_bound - t
@@ -279,7 +277,9 @@ def advance(
             h = step * shrinkage(error / tolerance, order)
             continue
         part = max(error / tolerance, 1e-6)
-        factor, last_part = growth(part, last_part, order), part
+        least = LEAST_FALL * last_part * (step / last_step) ** order if last_step > 0.0 else 0.0
+        factor = growth(max(part, least), last_part, order)
+        last_part, last_step = part, step
         h = max(h, step) if reaches and factor > 1.0 else step * factor
         next_y[2 * n * dofs], next_y[2 * n * dofs + 1] = 0.0, 0.0
         bad = clearance_of(passes, arm[1], stages[0][count - 1]) <= 0.0 or not finite(next_y)

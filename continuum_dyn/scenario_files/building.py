@@ -95,11 +95,7 @@ def _arm(file: ScenarioFile, numbers: Numbers) -> Arm:
 
 def _subsegments(given: int | str | None) -> int:
     """Segments from disk to disk; if the program chooses them it starts from one."""
-    if given is None or given == "auto":
-        return 1
-    if isinstance(given, str) or given < 1:
-        raise InputError(f'[arm] subsegments: a number from 1 on, or "auto"; read {given!r}.')
-    return given
+    return given if isinstance(given, int) else 1
 
 
 def _cable(cable: CableTable, numbered: str) -> Cable:

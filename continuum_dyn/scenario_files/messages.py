@@ -37,7 +37,7 @@ MAX_SHOWN = 12
 METHODS = get_args(Method)
 LISTS = [name for name, field in ScenarioFile.model_fields.items() if get_origin(field.annotation) is list]
 """Lists of tables, which a file may leave out."""
-TAGS = {"number", "list", UNKNOWN_PROFILE, *PROFILES, *STUDIES}
+TAGS = {"number", "list", "word", UNKNOWN_PROFILE, *PROFILES, *STUDIES}
 """Parts of a place that only tell which kind of value was read."""
 TABLE_ERRORS = {"model_type", "model_attributes_type", "dataclass_type", "dict_type", "list_type"}
 """Types of pydantic's errors about a value in place of a table, or of a list of them."""

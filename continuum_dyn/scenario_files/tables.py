@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Discriminator, Field, Tag, WithJsonSchema, create_model
+from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag, WithJsonSchema, create_model
 
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.expect import Expect
@@ -90,7 +90,22 @@ NumberEach = Annotated[
 Preset = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(PRESETS)})]
 """Others are refused where the arm is made, with the nearest of them."""
 
-SUBSEGMENTS = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_SEGMENTS}, {"const": "auto"}]}
+
+def _count_kind(value: Any) -> str:
+    return "word" if isinstance(value, str) else "number"
+
+
+def _auto(word: str) -> str:
+    if word != "auto":
+        raise ValueError('a whole number from 1 on, or "auto"')
+    return word
+
+
+Subsegments = Annotated[
+    Annotated[int, Field(ge=1, le=MAX_SEGMENTS), Tag("number")]
+    | Annotated[str, AfterValidator(_auto), WithJsonSchema({"const": "auto"}), Tag("word")],
+    Discriminator(_count_kind),
+]
 
 
 MaterialName = Annotated[Line, WithJsonSchema({"type": "string", "enum": list(MATERIALS)})]
@@ -126,7 +141,7 @@ class ArmTable(BaseModel):
     disk_inertia: MassEach | None = None
     reference_curvature: NumberEach | None = None
     subsegments: Annotated[
-        Annotated[int | Line, WithJsonSchema(SUBSEGMENTS)] | None,
+        Subsegments | None,
         Field(description='number of segments from disk to disk; "auto": as many as [accuracy] needs'),
     ] = None
 

@@ -301,9 +301,9 @@ def test_base_that_does_not_fit_is_refused(
     [
         (", phase = 1.5707963267948966", "", "[base] y: its rate jumps by 0.0722566 m/s at 0 s"),
         ("\ny = {", "\nz = {", "[base]: unknown key 'z'"),
-        ('"sine"', '"sin"', "[base] y profile profile: unknown profile 'sin'. Did you mean 'sine'?"),
+        ('"sine"', '"sin"', "[base] y: unknown profile 'sin'. Write 'sine'."),
         ("phase =", "fase =", "Did you mean 'phase'?"),
-        ("\ny = {", "\nx = [1.0, 2.0]\ny = {", "[base] x list"),
+        ("\ny = {", "\nx = [1.0, 2.0]\ny = {", "[base] x: a number is expected; read [1.0, 2.0]"),
         ("\ny = {", '\nx = { profile = "table", file = "no.csv" }\ny = {', "no such file"),
     ],
 )

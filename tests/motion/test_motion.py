@@ -172,7 +172,7 @@ def test_what_has_not_settled_says_by_how_much_and_when_it_would() -> None:
     assert run.trajectory is not None
     assert longer.trajectory is not None
     assert run.static_gap is not None
-    assert f"{run.static_gap:.2g} m from the final equilibrium" in run.message
+    assert f"{1e3 * run.static_gap:.2g} mm from the final equilibrium" in run.message
     assert f"moves at {run.trajectory.tip_speed[-1]:.2g} m/s" in run.message
     assert f"below {scenario.settled_within:.2g} m" in run.message
     moved, (x, y, _) = longer.trajectory, longer.equilibria[-1].tip

@@ -56,7 +56,7 @@ def test_every_scenario_of_the_repository_loads_and_opens_with_what_it_shows(pat
         (
             "hole_offset = 0.008",
             "",
-            "missing 'hole_offset': cable hole's place along the disk's y axis, in m",
+            "missing 'hole_offset': position of a cable's hole along the disk's y axis, in m",
         ),
         ("duration = 1.0", "", "missing 'duration'"),
         ('kind = "step_response"', "", "missing 'kind'"),

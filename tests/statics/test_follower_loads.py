@@ -279,7 +279,7 @@ def test_work_of_a_follower_is_booked_by_every_method(tmp_path: Path, method: An
     [
         ("disk = 4", "disk = 5", "follower load on disk 5: beyond the arm. Allowed: disks 1 to 4"),
         ("follower = true", "folower = true", "Did you mean 'follower'?"),
-        ("follower = true", "follower = 1", "follower: input should be a valid boolean"),
+        ("follower = true", "follower = 1", "follower: true or false is expected; read 1"),
         ("[study]", '[solver]\nmethod = "midpoint"\n\n[study]', "follower loads have no potential"),
     ],
 )

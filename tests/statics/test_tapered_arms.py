@@ -77,10 +77,10 @@ def test_tapered_arm_runs_and_its_log_says_what_differs(tmp_path: Path) -> None:
     ("before", "after", "told"),
     [
         ("0.02, 0.015]", "0.02]", "3 numbers for 4 disks"),
-        ("disk_mass = [1e-3, 8e-4, 6e-4, 4e-4]", "disk_mass = []", "at least 1 item"),
+        ("disk_mass = [1e-3, 8e-4, 6e-4, 4e-4]", "disk_mass = []", "at least 1 value"),
         ("0.007, 0.006]", "0.007]", "4 hole_offsets"),
-        ("6e-4, 4e-4]", "6e-4, -4e-4]", r"\[arm\] disk_mass list 3"),
-        ("6e-4, 4e-4]", '6e-4, "heavy"]', r"\[arm\] disk_mass list 3"),
+        ("6e-4, 4e-4]", "6e-4, -4e-4]", r"\[arm\] disk_mass number 4"),
+        ("6e-4, 4e-4]", '6e-4, "heavy"]', r"\[arm\] disk_mass number 4"),
     ],
 )
 def test_lists_that_do_not_fit_are_refused(tmp_path: Path, before: str, after: str, told: str) -> None:
