@@ -65,10 +65,10 @@ def test_run_takes_logs_and_scenarios_of_any_name(tmp_path: Path) -> None:
 
 def test_play_without_a_display_names_what_to_do_instead() -> None:
     words = "Error: winit EventLoopError: neither WAYLAND_DISPLAY nor DISPLAY is set."
-    assert _why_no_window(words, 1) == "there is no display here to open the rerun viewer on."
+    assert _why_no_window(words, 1) == "no display is available for the rerun viewer."
     assert (
         _why_no_window("no such wgpu adapter.", 1)
-        == "the rerun viewer cannot run here: no such wgpu adapter."
+        == "the rerun viewer cannot start: no such wgpu adapter."
     )
     assert "--web" in viewer.INSTEAD
     assert "--save" in viewer.INSTEAD
