@@ -9,6 +9,7 @@ from continuum_dyn.scenario.profiles import Constant, Profile
 from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario_files.arm_numbers import Numbers, arm_numbers
 from continuum_dyn.scenario_files.csv_table import Tables
+from continuum_dyn.scenario_files.expected import as_read
 from continuum_dyn.scenario_files.self_contained import self_contained
 from continuum_dyn.scenario_files.tables import (
     BaseTable,
@@ -93,12 +94,12 @@ def _arm(file: ScenarioFile, numbers: Numbers) -> Arm:
     return Arm(**single, subsegments=subsegments, each=PerDisk(**lists), cables=cables, payloads=payloads)
 
 
-def _subsegments(given: int | str | None) -> int:
+def _subsegments(given: Any) -> int:
     """Segments from disk to disk; if the program chooses them it starts from one."""
     if given is None or given == "auto":
         return 1
-    if isinstance(given, str) or given < 1:
-        raise InputError(f'[arm] subsegments: a number from 1 on, or "auto"; read {given!r}.')
+    if type(given) is not int or given < 1:
+        raise InputError(f'[arm] subsegments: a whole number from 1 on, or "auto"; read {as_read(given)}.')
     return given
 
 

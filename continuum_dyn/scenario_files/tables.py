@@ -126,7 +126,7 @@ class ArmTable(BaseModel):
     disk_inertia: MassEach | None = None
     reference_curvature: NumberEach | None = None
     subsegments: Annotated[
-        Annotated[int | Line, WithJsonSchema(SUBSEGMENTS)] | None,
+        Annotated[Any, WithJsonSchema(SUBSEGMENTS)] | None,
         Field(description='number of segments from disk to disk; "auto": as many as [accuracy] needs'),
     ] = None
 

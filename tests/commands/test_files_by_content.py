@@ -67,8 +67,7 @@ def test_play_without_a_display_names_what_to_do_instead() -> None:
     words = "Error: winit EventLoopError: neither WAYLAND_DISPLAY nor DISPLAY is set."
     assert _why_no_window(words, 1) == "no display is available for the rerun viewer."
     assert (
-        _why_no_window("no such wgpu adapter.", 1)
-        == "the rerun viewer cannot start: no such wgpu adapter."
+        _why_no_window("no such wgpu adapter.", 1) == "the rerun viewer cannot start: no such wgpu adapter."
     )
     assert "--web" in viewer.INSTEAD
     assert "--save" in viewer.INSTEAD

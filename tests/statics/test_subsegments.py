@@ -209,9 +209,9 @@ def test_cost_of_a_scene_with_massless_nodes_says_what_to_give() -> None:
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ('"autos"', "or \"auto\"; read 'autos'"),
+        ('"autos"', 'or "auto"; read "autos"'),
         ("0", "from 1 on"),
-        ("2.5", "valid integer"),
+        ("2.5", r"subsegments: a whole number from 1 on, or \"auto\"; read 2\.5\.$"),
         ("5000", "20000 segments"),
         ('"auto"', r"needs an accuracy"),
     ],
