@@ -233,8 +233,8 @@ def _check_spread(rates: np.ndarray, farthest: float) -> None:
     slowest, fastest = float(rates.min()), float(rates.max())
     if not slowest * farthest > fastest:
         raise InputError(
-            f"modes are lost in rounding: rates of the linearized motion reach from {slowest:.3g} to "
-            f"{fastest:.3g} 1/s, and may be a factor of {farthest:.2g} apart. Give the lightest nodes more "
+            f"modes are lost in rounding: rates of the linearized motion go from {slowest:.3g} to "
+            f"{fastest:.3g} 1/s; their largest ratio is {farthest:.2g}. Give the lightest nodes more "
             "mass (disk_mass, core_density) or inertia, or leave out the damping that makes them so fast."
         )
 
@@ -252,12 +252,12 @@ def check(scene: Scene) -> None:
         raise InputError("modes need the effect 'inertia'. Add inertia = {} to [effects].")
     if scene.arm.massless_nodes:
         raise InputError(
-            "modes need mass on every node, and some carry none. Give the arm's core_density, or disk_mass."
+            "modes need mass at every node, and some have none. Give the arm's core_density, or disk_mass."
         )
     size = scene.arm.segments * len(scene.coordinates)
     if size > MOST_COORDINATES:
         raise InputError(
-            f"modes of {size} coordinates are asked for; allowed: {MOST_COORDINATES}. Give fewer disks or "
+            f"{size} coordinates are too many for modes. Allowed: {MOST_COORDINATES}. Give fewer disks or "
             "subsegments: the lowest modes need few."
         )
 

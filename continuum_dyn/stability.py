@@ -29,7 +29,7 @@ class Growth:
     frequency: float
 
     def __str__(self) -> str:
-        more = f" (the fastest of {self.modes} modes that grow)" if self.modes > 1 else ""
+        more = f" (the fastest of {self.modes} growing modes)" if self.modes > 1 else ""
         if self.frequency:
             return f"flutter at {self.frequency:.4g} Hz that grows at {self.rate:.3g} 1/s{more}"
         return f"divergence that grows at {self.rate:.3g} 1/s{more}"
@@ -61,7 +61,9 @@ def why_not_judged(scene: Scene) -> str | None:
         check(scene)
     except InputError as reason:
         loads = " and ".join(scene.without_potential)
-        return f"stability is not judged: {loads} have no potential, so modes must tell, and {reason}"
+        return (
+            f"stability is not checked: {loads} have no potential, so it follows from the modes, and {reason}"
+        )
     return None
 
 

@@ -318,8 +318,10 @@ class _Follower:
             if not critical and self.here.parameter == last:
                 return self._ended(Outcome.COMPLETED)
             if self.here.parameter <= 0.0 and not self.forwards:
-                return self._ended(Outcome.NO_EQUILIBRIUM, "it turns back beyond the ramp's first point")
-        return self._ended(Outcome.NO_EQUILIBRIUM, "it takes more steps than it may")
+                return self._ended(
+                    Outcome.NO_EQUILIBRIUM, "it turns back and leaves the ramp at its first point"
+                )
+        return self._ended(Outcome.NO_EQUILIBRIUM, "all steps are used up before the ramp's last point")
 
     def _step(self) -> tuple[_PathPoint, Critical, bool] | None:
         """Next point of the path: the end of a step, or the first event within it; None if there is none."""
@@ -439,7 +441,9 @@ class _Follower:
     def _lost(self) -> Path:
         if self.here.clearance < NEAR_LIMIT:
             return self._ended(Outcome.GEOMETRY_LIMIT)
-        return self._ended(Outcome.NO_EQUILIBRIUM, "it cannot be followed any further")
+        return self._ended(
+            Outcome.NO_EQUILIBRIUM, 'no point follows, even in the smallest steps; try path = "stable"'
+        )
 
     def _ended(self, outcome: Outcome, message: str = "") -> Path:
         return Path(outcome, self.points, self.parameters, self._equilibrium(), message)

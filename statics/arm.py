@@ -173,7 +173,7 @@ class Arm:
     def __post_init__(self) -> None:
         if self.segments > MAX_SEGMENTS:
             raise InputError(
-                f"{self.disks} disks with subsegments = {self.subsegments} are {self.segments} segments. "
+                f"{self.disks} disks with subsegments = {self.subsegments} make {self.segments} segments. "
                 f"Allowed: {MAX_SEGMENTS}."
             )
         if self.core_density is not None and not self.knows("area"):
@@ -215,7 +215,7 @@ class Arm:
             raise InputError(
                 f"cable '{cable.name}': reference_curvature x hole_offset is "
                 f"{across[np.abs(across).argmax()]:g}, so its holes meet in the unloaded arm. "
-                "Allowed: between -1 and 1. Lessen reference_curvature or hole_offset."
+                "Allowed: between -1 and 1. Reduce reference_curvature or hole_offset."
             )
 
     @classmethod

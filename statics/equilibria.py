@@ -120,8 +120,8 @@ class Equilibrium:
         """
         if not self.found:
             raise NotFoundError(
-                f"no equilibrium was found {self.drive} ({self.outcome}), so there is no tip of one. Look at "
-                "'found' first; disk_x, disk_y and disk_theta say where the search ended."
+                f"no equilibrium was found {self.drive} ({self.outcome}), so the tip has no position. Check "
+                "'found' first; disk_x, disk_y and disk_theta are the shape at which the search ended."
             )
         return float(self.disk_x[-1]), float(self.disk_y[-1]), float(self.disk_theta[-1])
 

@@ -50,9 +50,9 @@ class Scene:
         )
         for count, what in alike:
             if count > MAX_ALIKE:
-                raise InputError(f"{count} {what}: each has equations of its own. Allowed: {MAX_ALIKE}.")
+                raise InputError(f"{count} {what}: each adds its own equations. Allowed: {MAX_ALIKE}.")
         if self.has("cable_friction") and not self.has("cables"):
-            raise InputError("effect 'cable_friction' without cables in play. Add 'cables', or leave it out.")
+            raise InputError("effect 'cable_friction' needs effect 'cables'. Add 'cables', or leave it out.")
 
     def _check(self, effect: Effect) -> None:
         for quantity in effect.arm_quantities:
@@ -145,8 +145,8 @@ class Scene:
         """Raise ``InputError`` if paths of equilibria cannot be followed by arc length."""
         if self.path_hindrances:
             raise InputError(
-                f"a path by arc length needs a potential, which {' and '.join(self.path_hindrances)} does "
-                'not have. Take path = "stable".'
+                f'path = "arc_length" needs a potential; without one: {" and ".join(self.path_hindrances)}. '
+                'Give path = "stable".'
             )
 
     @cached_property
@@ -267,10 +267,12 @@ class Scene:
         """
         values = np.atleast_1d(np.asarray([] if tension is None else tension, dtype=float))
         if values.shape != (self.cables,):
-            raise InputError(f"{values.size} tensions given; the scene has {self.cables} cables in play.")
+            raise InputError(
+                f"{values.size} tensions given; the scene needs {self.cables}, one for each cable."
+            )
         pulls = [not kind.driven_by_length for kind in self.cable_kinds]
         if not (np.isfinite(values).all() and (values[pulls] >= 0).all()):
-            raise InputError(f"tensions must be finite and not negative; given: {values.tolist()}.")
+            raise InputError(f"tensions must be finite, and 0 or more; given: {values.tolist()}.")
         pose = [] if self.arm.base is None else self.arm.base_pose
         known = np.concatenate([values, np.ones(self.driven_loads), pose])
         return np.pad(known, (0, len(self.inputs) - known.size))

@@ -31,11 +31,11 @@ def last_change(scenario: Scenario, until: float) -> LastChange:
     before = np.array([profile.initial for profile in profiles])
     changes = list(_changes(before, intervals))
     if not changes:
-        raise InputError(f"nothing that drives this motion changes before {until:g} s.")
+        raise InputError(f"no input changes before the motion ends, at {until:g} s.")
     if changes[-1].end >= until:
         raise InputError(
-            f"what drives this motion still changes when it ends, at {until:g} s: there is nothing "
-            "to settle to."
+            f"inputs still change when the motion ends, at {until:g} s. Make the [study] longer, or the "
+            "change earlier."
         )
     return changes[-1]
 

@@ -12,7 +12,7 @@ def at_pace(scenario: Scenario, factor: float) -> Scenario:
 
     Raises ``InputError`` for a study without motion.
     """
-    study = scenario.require_motion("only a motion has a pace")
+    study = scenario.require_motion("only a motion can be run at other rates")
     return replace(
         scenario,
         drives=tuple(_faster(profile, factor) for profile in scenario.drives),
@@ -34,4 +34,4 @@ def _faster(profile: Any, factor: float) -> Profile:
             return replace(profile, frequency=profile.frequency * factor)
         case Table():
             return replace(profile, time=tuple(t / factor for t in profile.time))
-    raise TypeError(f"{profile!r} is no profile")
+    raise TypeError(f"not a profile: {profile!r}")

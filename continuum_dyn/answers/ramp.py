@@ -119,7 +119,7 @@ def _rows(log: Log) -> np.ndarray:
             f"{log.path}: no static path in this log. Add static_path = true to [study], and run."
         )
     if len(rows) < 2:
-        raise InputError(f"{log.path}: {len(rows)} equilibria; a ramp has several.")
+        raise InputError(f"{log.path}: a ramp needs at least 2 equilibria; found: {len(rows)}.")
     return rows
 
 
@@ -135,7 +135,7 @@ def _drive(log: Log, rows: np.ndarray) -> Drive:
     for number, values in enumerate(factors.T, start=1):
         if np.ptp(values) > 0.0:
             return Drive("load_factor", f"load {number}", values)
-    raise InputError(f"{log.path}: no tension and no load factor changes in this log; nothing is ramped.")
+    raise InputError(f"{log.path}: not a log of a ramp: no tension or load factor changes.")
 
 
 def _path(columns: Any, rows: np.ndarray) -> TipPath:
@@ -149,7 +149,7 @@ def _lag(drive: Drive, static: TipPath, motion: TipPath, time: np.ndarray, branc
     if steps.max() > JUMP * np.ptp(values):
         raise InputError(
             f"the {drive.quantity.replace('_', ' ')} of {drive.of} jumps at {at[np.argmax(steps)]:g} s; a "
-            "ramp changes it gradually. Ask settle about steps."
+            "ramp changes it gradually. For steps, use continuum-dyn settle."
         )
     rate = float(np.max(steps / np.diff(at)))
     late = delay(at, motion.tip[branch], static.tip[branch])
@@ -194,13 +194,13 @@ def _unstable(log: Log, rows: np.ndarray) -> bool:
 
 def _reason(name: str, log: Log, loop: Loop | None, rows: np.ndarray) -> str:
     if name == "measured_quasistatic_rate":
-        return "not asked for; --measure runs the scenario at other rates"
+        return "not measured; --measure runs the scenario at other rates"
     if not log.trajectory and not name.startswith("static"):
-        return "nothing moves in this log; it is a ramp of equilibria"
+        return "a ramp of equilibria has no motion"
     if name == "quasistatic_rate":
-        return "the motion is on its static path"
+        return "the motion does not lag behind its static path"
     if _unstable(log, rows):
-        return "the path passes through unstable equilibria; it is no way there and back"
+        return "the path passes through unstable equilibria; it has no rising and falling branch"
     if loop is None:
-        return "the drive does not come back"
+        return "the input does not return"
     return "the work of loads is not in the log"

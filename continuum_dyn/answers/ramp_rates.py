@@ -26,12 +26,12 @@ def measure_at_other_rates(
     """
     own, about, error = (found.figures[n] for n in ("ramp_rate", "quasistatic_rate", "quasistatic_error"))
     if own is None or about is None or error is None:
-        raise InputError(f"there is no rate to measure at: {found.missing['quasistatic_rate']}.")
+        raise InputError(f"no quasistatic rate can be measured: {found.missing['quasistatic_rate']}.")
     lags = tuple(_lag_at(scenario, own, pace * about, progress) for pace in PACES)
     rate = rate_within(error, *np.array(lags).T)
     missing = {name: why for name, why in found.missing.items() if name != "measured_quasistatic_rate"}
     if rate is None:
-        missing["measured_quasistatic_rate"] = "at the rates that were run the lag does not pass the error"
+        missing["measured_quasistatic_rate"] = "at none of the rates run does the lag exceed the error"
     figures = found.figures | {"measured_quasistatic_rate": rate}
     return replace(found, measured=lags, figures=figures, missing=missing)
 
@@ -40,12 +40,12 @@ def _lag_at(scenario: Scenario, own: float, rate: float, progress: Callable[[str
     progress(f"at {rate:.3g} per s")
     pace = rate / own
     faster = at_pace(scenario, pace)
-    study = faster.require_motion("only a motion has a rate")
+    study = faster.require_motion("only a motion can be run at other rates")
     samples = max(study.samples, 1 + ceil((study.samples - 1) / pace))  # no farther apart
     run = simulate(replace(faster, study=replace(study, samples=samples, static_path=True)))
     found = [sample for sample, point in enumerate(run.static_path) if point.found]
     if run.tips is None or not found:
         reason = run.message or "no equilibrium of its static path was found"
-        raise InputError(f"run at {pace:.3g} times its pace the ramp ends as {run.outcome}: {reason}.")
+        raise InputError(f"at {pace:.3g} times its rate the ramp ends as {run.outcome}: {reason}.")
     rests = np.array([run.static_path[sample].tip[:2] for sample in found])
     return RateLag(rate, float(gap(run.tips[found], rests).max()))

@@ -85,23 +85,21 @@ def fit_ring_down(time: np.ndarray, value: np.ndarray) -> RingDown:
     rest, cosine, sine = map(float, parts(found.x)[1])
     misfit = float(np.sqrt(np.mean(found.fun**2)) / np.std(signal))
     if misfit > WORST_MISFIT or turning <= 0.0:
-        raise InputError("what is left swings, but not as one damped sinusoid.")
+        raise InputError("the free motion oscillates, but not as one damped sinusoid.")
     amplitude, phase = float(np.hypot(cosine, sine)), float(np.arctan2(-sine, cosine))
     return RingDown(float(time[turns[0]]), decay, turning, rest, amplitude, phase, misfit)
 
 
 def _check(turns: np.ndarray) -> None:
     if not turns.size:
-        raise InputError("no ring-down: it comes to rest without swinging.")
+        raise InputError("no ring-down: the tip settles without oscillating.")
     if turns.size < FEWEST_TURNINGS:
-        raise InputError(
-            f"no ring-down: {turns.size} turning points, too few for a frequency; needed: {FEWEST_TURNINGS}."
-        )
+        raise InputError(f"too few turning points for a frequency: {turns.size}, needed: {FEWEST_TURNINGS}.")
     between = float(np.median(np.diff(turns)))
     if between < FEWEST_SAMPLES:
         raise InputError(
-            f"samples too far apart: {between:g} from one turning point to the next, needed: "
-            f"{FEWEST_SAMPLES}. Ask for more samples."
+            f"too few samples: {between:g} from one turning point to the next, needed: "
+            f"{FEWEST_SAMPLES}. Increase [study] samples."
         )
 
 

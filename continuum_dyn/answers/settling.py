@@ -84,9 +84,9 @@ def settling(log: Log) -> Settling:
 
 def _motion_times(log: Log) -> np.ndarray:
     if not log.trajectory or len(log.trajectory["time"]) < 2:
-        raise InputError(f"{log.path}: nothing moves in this log; settling is asked of motions.")
+        raise InputError(f"{log.path}: not a log of a motion; equilibria do not settle.")
     if "time" not in log.equilibria or len(log.equilibria["time"]) < 2:
-        raise InputError(f"{log.path}: the last equilibrium was not found; there is nothing to settle to.")
+        raise InputError(f"{log.path}: the final equilibrium was not found, so settling is not defined.")
     return log.trajectory["time"]
 
 
@@ -98,7 +98,7 @@ def _along(log: Log, begin: float) -> tuple[np.ndarray, float]:
     line = _place_of_rest(log) - start
     travel = float(np.hypot(*line))
     if travel < NO_TRAVEL * log.arm_length:
-        raise InputError(f"{log.path}: the tip is where it will rest from the start; it does not travel.")
+        raise InputError(f"{log.path}: the tip starts at its final equilibrium and has no travel.")
     return (tip - start) @ line / travel, travel
 
 
@@ -122,9 +122,9 @@ def _reason(name: str, missing: dict[str, str]) -> str:
     if name in STEP_FIGURES and "step" in missing:
         return missing["step"].rstrip(".")
     if name in BANDS:
-        return "it does not stay within the band for half a period before the log ends"
+        return "the tip does not stay within the band for half a period before the log ends"
     if name == "rise_time":
-        return "it does not come to 90 % of its travel"
+        return "the tip does not reach 90 % of its travel"
     if name == "static_gap":
         return "the motion stopped early"
     return missing.get("mode" if name.startswith("mode") else "ring_down", "").rstrip(".")
@@ -181,8 +181,8 @@ def _check_samples(time: np.ndarray, found: tuple[Mode, ...]) -> None:
     spacing, swing = float(np.median(np.diff(time))), _longest_swing(found)
     if 0.0 < swing < FEWEST_SAMPLES * spacing:
         raise InputError(
-            f"samples too far apart: {spacing:.3g} s, where the lowest mode swings at {0.5 / swing:.4g} Hz. "
-            "Ask for more samples."
+            f"too few samples: one every {spacing:.3g} s, and the lowest mode has {0.5 / swing:.4g} Hz. "
+            "Increase [study] samples."
         )
 
 

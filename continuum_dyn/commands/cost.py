@@ -66,14 +66,16 @@ def _write_mesh_csv(measured: "Cost", path: Path) -> None:
 def _show(measured: "Cost") -> None:
     screen = console()
     screen.print(_price_table(measured))
-    screen.print(f"Errors against two references {length(measured.reference_gap)} apart; work in segment")
-    screen.print("evaluations.\n")
+    screen.print(
+        f"Errors against a reference, checked by a second one {length(measured.reference_gap)} away;"
+    )
+    screen.print("work in segment evaluations.\n")
     if measured.meshes:
         screen.print(_mesh_table(measured.meshes))
         screen.print("At rest under the last tensions, against the exact rod. From two: extrapolated")
         screen.print("from this mesh and the one before.\n")
     else:
-        screen.print(f"No errors of meshes: {measured.no_meshes}\n")
+        screen.print(f"No mesh errors: {measured.no_meshes}\n")
     screen.print(_effect_table(measured))
     screen.print(_frontier_table(measured))
 
@@ -114,11 +116,13 @@ def _order(before: float | None, error: float | None) -> str:
 
 
 def _effect_table(measured: "Cost") -> Any:
-    effects = plain_table("Without an effect", "left out", "tip moves by", "time", "fastest rate")
+    effects = plain_table(
+        "Effects left out one at a time", "left out", "tip moves by", "time", "fastest rate"
+    )
     effects.add_row("(nothing)", "", "1", f"{measured.fastest_rate:.3g} 1/s")
     for e in measured.effects:
         if e.tip_shift is None:
-            effects.add_row(e.name, "no such motion without it")
+            effects.add_row(e.name, "no motion without it")
         else:
             effects.add_row(e.name, length(e.tip_shift), f"{e.time_ratio:.2g}", f"{e.fastest_rate:.3g} 1/s")
     return effects

@@ -57,7 +57,7 @@ def explain(
     _print_numbers(scene)
     if scene.arm.base is not None:
         _print_base(scene.arm)
-    say("Effects in play")
+    say("Effects")
     width = max((len(effect.name) for effect in scene.effects), default=0)
     for effect in scene.effects:
         line = f"  {effect.name:<{width}} on each {effect.site:<8} {effect.source}"
@@ -73,7 +73,7 @@ def explain(
     if measure:
         show_what_to_leave_out(scenario)
     else:
-        say("\nWhat this scenario could do without: measured if you add --measure.")
+        say("\nTo measure which effects can be left out, add --measure.")
 
 
 def _print_numbers(scene: Any) -> None:
@@ -83,7 +83,7 @@ def _print_numbers(scene: Any) -> None:
     numbers = {name: getattr(arm.each, name, None) or getattr(arm, name) for name in known}
     for effect in scene.effects:
         numbers |= {name: getattr(effect, name) for name in effect.quantities if hasattr(effect, name)}
-    say(f"Numbers, of {arm.disks} disks on {arm.total_length:g} m of core")
+    say(f"Numbers of {arm.disks} disks on {arm.total_length:g} m of core")
     for name, value in numbers.items():
         unit = QUANTITIES[name].unit
         shown = ", ".join(f"{each:.6g}" for each in (value if isinstance(value, tuple) else (value,)))
@@ -136,7 +136,7 @@ def _print_equations(scene: Any, latex: bool) -> None:
     forces = with_status("explain", lambda progress: _derive(structure, progress))
     write = _latex if latex else _text
     used: set[str] = set()
-    say("\nOne segment: its far end seen from its near disk (Eq. 11)")
+    say("\nOne segment: position of its far end relative to its near disk (Eq. 11)")
     for name, value in zip("xy", forces.segment.displacement, strict=True):
         say(write(name, value, used))
     for where, places, at in (
@@ -184,7 +184,7 @@ def _print_cable_laws(cables: Any, used: set[str]) -> None:
 
 
 def _print_letters(used: set[str]) -> None:
-    say("\nLetters")
+    say("\nSymbols")
     for name, quantity in QUANTITIES.items():
         if name in used and quantity.letter != name:
             say(_wrap(f"{quantity.letter:<4} {name} ({quantity.unit}): {quantity.meaning}"))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from continuum_dyn.commands.terminal.output import console, give_back
-from continuum_dyn.commands.terminal.show import bending, duration, length, plain_table
+from continuum_dyn.commands.terminal.show import bending, counts, duration, length, plain_table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,13 +54,13 @@ def _facts(log: "Log") -> Iterator[tuple[str, str]]:
     given, arm = log.attributes, log.arm
     yield "outcome", str(log.outcome) + (f": {log.message}" if log.message else "")
     if not log.complete:
-        yield "", f"not complete; go on with it: continuum-dyn resume {log.path}"
+        yield "", f"not complete; to resume: continuum-dyn resume {log.path}"
     settings = [f"{name} {given[name]:g}" for name in ("rtol", "atol", "step") if name in given]
     yield "study", " by ".join([given["study"], *([given["method"]] if "method" in given else [])])
     if settings:
         yield "settings", ", ".join(settings)
     if log.counters:
-        yield "work", ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in log.counters.items())
+        yield "work", counts(log.counters)
     for name in ("static_gap", "tip_error", "mesh_error"):
         if name in given:
             yield name.replace("_", " "), length(given[name])
@@ -75,7 +75,7 @@ def _facts(log: "Log") -> Iterator[tuple[str, str]]:
     lines = len(log.scenario.splitlines())
     yield (
         "scenario",
-        f"{lines} lines{tables}; print it with --scenario" if lines else "none: made from Python",
+        f"{lines} lines{tables}; print it with --scenario" if lines else "none: the run was made from Python",
     )
     yield "file", f"format {given['format_version']}, {log.path.stat().st_size / 1000:.0f} kB"
     yield "made by", given["versions"]

@@ -55,7 +55,7 @@ def _words(heading: str) -> set[str]:
 
 def _print(table: "KeyTable", width: int) -> None:
     say(table.heading)
-    say("\n".join(fill(line, width) for line in table.text.replace("`", "").splitlines()))
+    say("\n\n".join(fill(part, width) for part in table.text.replace("`", "").split("\n\n")))
     if table.example:
         say(f"\n{table.example}")
     for key in table.keys:

@@ -70,7 +70,7 @@ def _show(found: "RestModes") -> None:
     if len(found.modes) > MAX_ROWS:
         screen.print(f"and {len(found.modes) - MAX_ROWS} more, up to {found.modes[-1].frequency:.5g} Hz.")
     screen.print(f"\nAbout the equilibrium that the scenario starts from{_tensions(found)}. Frequencies are")
-    screen.print("those without damping; tip along x, y where the largest displacement is 1.")
+    screen.print("undamped; tip along x, y: its displacement, relative to the largest of any disk.")
 
 
 def _tensions(found: "RestModes") -> str:

@@ -116,21 +116,21 @@ def _figure_table(found: "RampAnswers") -> Any:
         return f"{value:.3g} {unit}"
 
     if found.motion is not None:
-        row("rate", "ramp_rate", rate, f"largest, of the {drive}")
-        row("lag", "tip_lag", length, "largest, of the tip, from its static path")
+        row("rate", "ramp_rate", rate, f"largest rate of the {drive}")
+        row("lag", "tip_lag", length, "largest distance of the tip from its static path")
         row("", "delay", duration, "as a delay on that path")
         within = f"for a lag of {length(figures['quasistatic_error'] or 0.0)}"
-        row("quasistatic", "quasistatic_rate", rate, f"{within}, if in proportion to the rate")
-        row("", "measured_quasistatic_rate", rate, f"{within}, by runs at several rates")
+        row("quasistatic", "quasistatic_rate", rate, f"{within}, if proportional to the rate")
+        row("", "measured_quasistatic_rate", rate, f"{within}, from runs at several rates")
         row("hysteresis", "hysteresis_area", energy, "work once around the loop, in motion")
-        row("", "tip_hysteresis", length, "of the tip there and back, in motion")
+        row("", "tip_hysteresis", length, "largest tip distance of its branches, in motion")
     row(
         "hysteresis" if found.motion is None else "",
         "static_hysteresis_area",
         energy,
-        "work once around it, at rest",
+        "work once around the loop, at rest",
     )
-    row("", "static_tip_hysteresis", length, "of the tip there and back, at rest")
+    row("", "static_tip_hysteresis", length, "largest tip distance of its branches, at rest")
     return table
 
 

@@ -80,20 +80,20 @@ def _show(found: "Rone2012") -> None:
     screen = console()
     screen.print(_height_table(found))
     screen.print(
-        "Virtual work and finite elements: the paper's columns. Unrounded: the program with A and J of a "
-        "core of 0.4 mm radius instead of Table 1's. By how many percent the program's sag is below the "
+        "Virtual work, finite elements: the paper's columns. Unrounded: the program with A and J of a core "
+        "radius of 0.4 mm, not Table 1's rounded ones. Percent by which the program's sag is below the "
         f"paper's: {_below(found.unactuated.program)}; unrounded {_below(found.unrounded)}.\n"
     )
     screen.print(_mass_table(found))
     screen.print(
-        "Core spread: the arm of the same mass, but that of its steel core along the core and not in the "
-        "disks; by the program and as an exact rod.\n"
+        "Core spread: the same total mass, with the steel core's part of it distributed along the core and "
+        "not in the disks; by the program and as an exact rod.\n"
     )
     screen.print(_distance_table(found))
     screen.print(
-        "Percent errors are those of the distance from the base: the paper's, what its digits give, by how "
-        "much half a unit of the last digit of x moves that, and the program's against the exact rod. The "
-        "paper's are below its rounding, so its digits do not give them; its first x lacks one.\n"
+        "Percent errors of the distance from the base: the paper's own; computed from its digits; the "
+        "effect of half a unit in the last digit of x; the program against the exact rod. The paper's own "
+        "errors are below its rounding, so its digits cannot give them. Its first x has one digit less.\n"
     )
     screen.print(_tip_table(found))
     for shapes in found.of_opposite_sign:
@@ -170,7 +170,7 @@ def _tip_table(found: "Rone2012") -> Any:
 
 def _sign_of(shapes: "Shapes") -> str:
     heights = ", ".join(f"{law} {1e6 * height:+.1f} um" for law, height in shapes.tip_y.items())
-    return f"At {shapes.tension:g} N the laws differ in sign: {heights}."
+    return f"At {shapes.tension:g} N the results differ in sign: {heights}."
 
 
 def _curvature_table(found: "Rone2012") -> Any:

@@ -17,7 +17,7 @@ from continuum_dyn.commands.terminal.extras import MissingExtraError, naming_ext
 from continuum_dyn.commands.terminal.log_names import hold_log, named_log
 from continuum_dyn.commands.terminal.output import console, say
 from continuum_dyn.commands.terminal.ramp_table import print_ramp, unsigned_zero
-from continuum_dyn.commands.terminal.show import bending, length, make_folder
+from continuum_dyn.commands.terminal.show import bending, counts, length, make_folder
 from continuum_dyn.commands.terminal.verbosity import shows_progress
 from statics.errors import InputError
 from statics.support.interruption import defer_interruption
@@ -259,7 +259,7 @@ def _show(report: dict[str, Any]) -> None:
         of_last = result.trajectory is not None or result.equilibria[-1].found
         table.add_row("tip", _pose(result.tip) + ("" if of_last else ", the last one found"))
     if result.static_gap is not None:
-        rest = "where friction may leave it" if len(result.rests) > 1 else "the final equilibrium"
+        rest = "the nearest rest that friction allows" if len(result.rests) > 1 else "the final equilibrium"
         table.add_row("gap to static", f"{length(result.static_gap)} from {rest}")
     if result.trajectory is not None:
         _add_motion(table, result)
@@ -272,7 +272,7 @@ def _show(report: dict[str, Any]) -> None:
     table.add_row("time", f"{result.solve_time:.3g} s solving, {record['wall_time']:.3g} s in all")
     if report["comparison"] is not None:
         table.add_row("compared", _comparison_text(report["comparison"], report["source"]))
-    replaced = ", in place of a log of another scenario" if report["replaces"] else ""
+    replaced = ", replaces the log of another scenario" if report["replaces"] else ""
     table.add_row("log", f"{report['log']}{replaced}")
     if report["without_recording"]:
         table.add_row("recording", f"none; {report['without_recording']}")
@@ -288,14 +288,14 @@ def _show(report: dict[str, Any]) -> None:
 
 def _comparison_text(found: "Comparison", earlier: Path) -> str:
     """Whether the run is the same as the earlier one."""
-    verdict = "the same as" if found.same else "NOT the same as"
+    verdict = "same as" if found.same else "DIFFERENT from"
     parts = [f"{verdict} {earlier}"]
     if found.outcomes[0] != found.outcomes[1]:
-        parts.append(f"outcome {found.outcomes[1]}, before {found.outcomes[0]}")
+        parts.append(f"outcome {found.outcomes[1]}, was {found.outcomes[0]}")
     if found.tip_distance is None:
-        parts.append("nothing to hold together")
+        parts.append("no tip to compare")
     elif found.tip_distance == 0.0:
-        parts.append("tips to the last bit")
+        parts.append("tips equal to the last bit")
     else:
         apart = f"{length(found.tip_distance)} apart {found.place}"
         parts.append(f"tips at most {apart}, allowed {length(found.allowed)}")
@@ -307,8 +307,7 @@ def _add_motion(table: Any, result: "Run") -> None:
     trajectory, solver = result.trajectory, result.solver
     assert trajectory is not None
     assert solver is not None
-    counters = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in trajectory.counters.items())
-    table.add_row("solver", f"{solver.method}: {counters}")
+    table.add_row("solver", f"{solver.method}: {counts(trajectory.counters)}")
     energy = max(
         float(abs(column).max(initial=0.0))
         for name, column in trajectory.ledger.items()
@@ -329,8 +328,8 @@ def _accuracy(result: "Run", error: float) -> str:
             if found.extrapolated
             else f"= {found.subsegments}"
         )
-        took.append(f"subsegments {meshes}, to which {length(found.estimate)} is due")
-    verdict = "estimated, not what was asked" if "not reached" in result.message else "checked"
+        took.append(f"subsegments {meshes}, which contribute {length(found.estimate)}")
+    verdict = "estimated, more than requested" if "not reached" in result.message else "checked"
     return f"tip within {length(error)}, {verdict}; {', '.join(took)}"
 
 

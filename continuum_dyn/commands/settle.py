@@ -72,13 +72,13 @@ def _show(title: str, found: "Settling", verdicts: list[Verdict]) -> None:
     screen.print(_step_table(found))
     screen.print(_ring_down_table(found))
     if found.cables_stick and found.mode is not None:
-        screen.print("The linear mode is that of cables that stick: small motions do not make them slip.")
+        screen.print("The linear mode is for sticking cables: in small motions they do not slip.")
     for why in dict.fromkeys(found.missing[name] for name in found.missing):
         names = [name.replace("_", " ") for name, reason in found.missing.items() if reason == why]
         screen.print(f"no {', '.join(names)}: {why}.")
     if (found.figures["ring_down_misfit"] or 0.0) > CLEAR_MISFIT:
-        screen.print("It does not die away as one mode does: its damping changes as it gets smaller, or")
-        screen.print("several modes swing.")
+        screen.print("It does not decay like a single mode: damping depends on the amplitude, or several")
+        screen.print("modes oscillate.")
     if verdicts:
         screen.print(verdict_table(verdicts, found.missing))
     screen.print()

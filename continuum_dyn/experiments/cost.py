@@ -136,7 +136,7 @@ class Cost:
 
 def prepare_motion(scenario: Scenario) -> Motion:
     """The scenario's motion. Raises ``InputError`` at rest, or without an equilibrium to start from."""
-    scenario.require_motion("cost is asked of a motion")
+    scenario.require_motion("cost needs a study of motion")
     motion = Motion(scenario)
     if not motion.rest.found:
         raise InputError(f"the motion has no equilibrium to start from: {motion.rest.outcome}.")
@@ -166,7 +166,7 @@ def _complete(motion: Motion, solver: Solver) -> Trajectory:
     """The motion by that solver. Raises ``InputError`` if it does not reach its end."""
     found = motion.complete(solver)
     if found is None:
-        raise InputError("the motion does not get to its end; see its outcome with the command run.")
+        raise InputError("the motion ends early; for the reason, see continuum-dyn run.")
     return found
 
 
@@ -177,7 +177,8 @@ def measure(scenario: Scenario, progress: Callable[[str], None] = lambda _: None
     """
     if scenario.scene.arm.massless_nodes:
         raise InputError(
-            'cost compares methods, and nodes without mass leave only "chain". Give the arm\'s core_density.'
+            'cost compares methods, and only "chain" can move nodes without mass. '
+            "Give the arm's core_density."
         )
     motion = prepare_motion(scenario)
     progress("references")

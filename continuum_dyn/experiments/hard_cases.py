@@ -71,14 +71,14 @@ def load_cases(path: Path) -> list[HardCase]:
     """
     scenario, expect = load_expecting(path)
     if expect is None:
-        raise InputError(f"{path}: expects nothing. Give [expect] outcome, and steps of each method.")
+        raise InputError(f"{path}: no table [expect]. Give its outcome, and steps of each method.")
     scenario.require_motion(f"{path}: [expect] is about a motion")
     extends, name = scenario.scene.has("extension"), path.stem
     other = expect.without_extension if extends else expect.with_extension
     if (expect.with_extension if extends else expect.without_extension) is not None:
         raise InputError(
-            f"{path}: [expect.{'with' if extends else 'without'}_extension]: the scenario is so by itself. "
-            "Give that in [expect]."
+            f"{path}: [expect.{'with' if extends else 'without'}_extension]: the scenario itself is "
+            f"{'with' if extends else 'without'} extension. Give these expectations in [expect]."
         )
     cases = [HardCase(name, scenario, expect)]
     if other is not None and extends:

@@ -103,7 +103,7 @@ class ChainStepper(Stepper):
             taken += more
         self.internal_steps = taken
         if taken == 0:
-            reason = "step size fell below rounding" if ended == TOO_SMALL else "no step was possible"
+            reason = "the step size fell below rounding" if ended == TOO_SMALL else "no step converged"
             return False, f"{reason} ({self.next_step:.3g} s)"
         self.knows_acceleration = True
         self.internal_times = self.records[0][: taken + 1]

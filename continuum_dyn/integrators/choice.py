@@ -37,24 +37,27 @@ def choose(
     """
     scene = dynamics.scene
     if scene.arm.massless_nodes:
-        return Choice("chain", "some nodes carry no mass, which no other method can do with")
+        return Choice(
+            "chain", "some nodes have no mass, and all other methods need the inverse of the mass matrix"
+        )
     if any(kind.rubs for kind in scene.cable_kinds):
-        return Choice("chain", "cables rub, and what holds one that sticks is stiff")
+        return Choice("chain", "cables have friction, which is stiff while they stick")
     if dissipated_by(scene) and dynamics.size > FEW:
-        return Choice("chain", f"the scene is damped, and {dynamics.size} coordinates make it stiff")
+        return Choice("chain", f"the scene is damped, and stiff because of its {dynamics.size} coordinates")
     if dissipated_by(scene):
         slowest, fastest = rates(dynamics, start, span)
-        found = f"its rates go from {slowest:.3g} to {fastest:.3g} 1/s"
+        found = f"with rates from {slowest:.3g} to {fastest:.3g} 1/s"
         if fastest > STIFF * slowest:
-            return Choice("chain", f"the scene is stiff, {found}, and damped: fast modes need no resolving")
-        return Choice("explicit", f"the scene is not stiff, {found}: explicit steps are the cheapest")
+            return Choice("chain", f"the scene is damped and stiff, {found}: fast modes need not be resolved")
+        return Choice("explicit", f"the scene is not stiff, {found}: explicit steps are cheapest")
     slowest = rates(dynamics, start, span)[0] if dynamics.size <= FEW else dynamics.frequency
     periods = duration * slowest / (2.0 * np.pi)
     if periods > MANY_PERIODS and not exact and not scene.without_potential:
         return Choice(
-            "midpoint", f"nothing is damped, and over some {periods:.0g} periods energy must not drift"
+            "midpoint",
+            f"the scene is undamped, and over about {periods:.0g} periods its energy must not drift",
         )
-    return Choice("explicit", "nothing is damped: every mode lasts, and has to be resolved")
+    return Choice("explicit", "the scene is undamped: all modes last, and must be resolved")
 
 
 def check(scene: Scene, method: Method) -> None:
@@ -63,7 +66,7 @@ def check(scene: Scene, method: Method) -> None:
     of_core = [effect for effect in scene.effects if effect.site == "segment" and effect.name in damping]
     if scene.arm.massless_nodes and not (METHODS[method].moves_massless_nodes and of_core):
         raise InputError(
-            "some nodes carry no mass: only damping of the core can move them, and only method "
-            f'"chain"; this is a {"damped" if of_core else "free"} motion by "{method}". '
-            "Give the arm's core_density, or effect material_damping and that method."
+            'some nodes have no mass: they need damping of the core, and method "chain"; this is '
+            f'{"a damped" if of_core else "an undamped"} motion by "{method}". '
+            'Give the arm\'s core_density, or material_damping and method "chain".'
         )

@@ -74,7 +74,9 @@ class Monitor:
             return self.stop(*found)
         self.reached = (t, y)
         if self.steps >= self.budget.steps:
-            return self.stop(Outcome.BUDGET_EXCEEDED, f"{self.steps} steps taken by t = {t:.6g} s")
+            return self.stop(
+                Outcome.BUDGET_EXCEEDED, f"max_steps = {self.budget.steps} reached at t = {t:.6g} s"
+            )
         if self._out_of_time(t):
             return self.message
         if self.progress is not None:
@@ -90,7 +92,9 @@ class Monitor:
         if self.interruption.asked:
             self.stop(Outcome.INTERRUPTED, f"interrupted at t = {t:.6g} s")
         elif self.budget.is_spent(self.started):
-            self.stop(Outcome.BUDGET_EXCEEDED, f"{self.budget.seconds:g} s used up by t = {t:.6g} s")
+            self.stop(
+                Outcome.BUDGET_EXCEEDED, f"max_seconds = {self.budget.seconds:g} used up at t = {t:.6g} s"
+            )
         else:
             return False
         return True

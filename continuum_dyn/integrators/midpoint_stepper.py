@@ -68,7 +68,7 @@ class MidpointStepper(Stepper):
         self.njev += iterations
         self.nlu += iterations
         if taken == 0:
-            return False, f"no solution found for a step of {self.size:.3g} s; try a smaller [solver] step"
+            return False, f"no solution for a step of {self.size:.3g} s; try a smaller [solver] step"
         self.t = self.t_bound if self.taken == self.steps else self._time(self.taken)
         self.y = self.dense_output()(self.t)
         return True, None

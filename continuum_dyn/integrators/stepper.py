@@ -34,7 +34,7 @@ class Stepper(ABC):
     def step(self) -> str | None:
         """Take one step; return the reason if it failed. Raises ``RuntimeError`` at the end."""
         if self.status != "running":
-            raise RuntimeError(f"this solver has {self.status}.")
+            raise RuntimeError(f"the solver cannot step: it has {self.status}.")
         before = self.t
         possible, message = self._step_impl()
         if possible:

@@ -193,7 +193,7 @@ def _too_large(file: Opened) -> Iterator[str]:
                 counts = list(map(prod, shapes))
                 declared += (max(counts) if counts[0] else 0) * found.dtype.itemsize
     if declared > allowed:
-        yield f"datasets of {declared:.3g} bytes in a file of {size:.3g}: not read"
+        yield f"datasets of {declared:.3g} bytes in a file of {size:.3g}: damaged, not read"
 
 
 def _wrong_names(file: Opened) -> Iterator[str]:
@@ -245,7 +245,7 @@ def _odd_scales(group: h5py.Group, known: Mapping[str, Column]) -> Iterator[str]
     for name, column in known.items():
         if column.dimensions == (name,) and name in group:
             if attribute(group[name], "CLASS") != "DIMENSION_SCALE":
-                yield f"{group.name}/{name}: not made a dimension scale"
+                yield f"{group.name}/{name}: is not a dimension scale"
             attached[name] = set(_attachments(group[name]))
     for name, column in known.items():
         for axis, scale in enumerate(column.dimensions):

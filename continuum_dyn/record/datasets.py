@@ -113,7 +113,7 @@ def begin_columns(
 def check_finite(group: h5py.Group, name: str, values: np.ndarray) -> None:
     """Raise ``LogError`` that names the dataset, unless all values are finite."""
     if values.dtype.kind == "f" and not np.isfinite(values).all():
-        raise LogError(f"{group.name}/{name} holds numbers that are not finite; they belong in no log.")
+        raise LogError(f"{group.name}/{name} has numbers that are not finite; the log is not written.")
 
 
 def _create_growing(group: h5py.Group, name: str, values: np.ndarray) -> h5py.Dataset:

@@ -15,7 +15,7 @@ def logged_scenario(log: Log, overrides: Sequence[str] = ()) -> Scenario:
     Raises ``LogError`` if the log holds none, or one that this program refuses.
     """
     if not log.scenario:
-        raise LogError(f"{log.path}: made from Python, it carries no scenario's text.")
+        raise LogError(f"{log.path}: no scenario in this log: the run was made from Python.")
 
     def text_of_table(name: str) -> str:
         if name not in log.tables:

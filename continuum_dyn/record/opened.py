@@ -72,7 +72,7 @@ def member(group: h5py.Group, name: str, kind: type) -> tuple[Any, str]:
         return None, ""
     place, key = f"{(group.name or '').rstrip('/')}/{name}", name.encode("utf-8", "surrogateescape")
     if group.id.links.get_info(key).type != h5py.h5l.TYPE_HARD:
-        return None, f"{place}: a link that leads elsewhere; it is not followed"
+        return None, f"{place}: a link to elsewhere; links are not followed"
     if h5py.h5o.get_info(group.id, key).type != _TYPES[kind]:
         return None, f"{place}: a {kind.__name__.lower()} is expected"
     if kind is h5py.Group:
@@ -85,8 +85,10 @@ def member(group: h5py.Group, name: str, kind: type) -> tuple[Any, str]:
 def _stored_elsewhere(dataset: h5py.Dataset) -> str:
     properties = dataset.id.get_create_plist()
     if properties.get_layout() == h5py.h5d.VIRTUAL or properties.get_external_count():
-        return f"{dataset.name}: its values lie in other files; they are not opened"
+        return f"{dataset.name}: its values are in other files, which are not opened"
     filters = {properties.get_filter(number)[0] for number in range(properties.get_nfilters())}
     return (
-        "" if filters <= PLAIN_FILTERS else f"{dataset.name}: packed with a filter that HDF5 has not built in"
+        ""
+        if filters <= PLAIN_FILTERS
+        else f"{dataset.name}: compressed with a filter that is not part of HDF5"
     )

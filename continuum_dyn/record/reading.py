@@ -72,17 +72,17 @@ def open_log(path: Path) -> Iterator[h5py.File]:
     try:
         _refuse_other_files(path)
         if path.stat().st_size > LARGEST:
-            raise LogError(f"{path}: larger than any log, {LARGEST / 1e9:g} GB; it is not read.")
+            raise LogError(f"{path}: larger than {LARGEST / 1e9:g} GB, and no log is.")
         with open_unclosed(path) if is_unclosed(path) else h5py.File(path, "r", locking=False) as file:
             if has_damaged_heaps(path, file):
-                raise LogError(f"{path}: its texts are damaged. Run its scenario again.")
+                raise LogError(f"{path}: the texts in it are damaged. Run its scenario again.")
             yield file
     except LogError:
         raise
     except FileNotFoundError as error:
         raise LogError(f"{path}: no such file.") from error
     except MemoryError as error:
-        raise LogError(f"{path}: larger than memory.") from error
+        raise LogError(f"{path}: larger than the available memory.") from error
     except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError) as error:
         number = error.errno if isinstance(error, OSError) else None
         told = f"cannot be read: {os.strerror(number)}" if number else "damaged"
@@ -98,9 +98,9 @@ def _refuse_other_files(path: Path) -> None:
     if start.startswith(SIGNATURE):
         return
     if not start:
-        raise LogError(f"{path}: an empty file, and no log.")
+        raise LogError(f"{path}: an empty file, not a log.")
     if path.suffix == ".toml" or b"[arm]" in start:
-        raise LogError(f"{path}: a scenario, and no log. Run it first: continuum-dyn run {path}")
+        raise LogError(f"{path}: a scenario, not a log. Run it first: continuum-dyn run {path}")
     raise LogError(f"{path}: not a log of continuum-dyn. Logs are written by continuum-dyn run, as NAME.h5.")
 
 

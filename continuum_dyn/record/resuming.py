@@ -23,7 +23,7 @@ def resumption_of(log: Log, scenario: Scenario) -> Resumption | None:
     """
     if log.complete and log.outcome not in RESUMABLE:
         raise LogError(
-            f"{log.path}: the run has ended ({log.outcome}); there is nothing to go on with. "
+            f"{log.path}: the run has ended ({log.outcome}) and cannot be resumed. "
             f"To run it again: continuum-dyn run {log.path}"
         )
     if scenario.study.motion is None or scenario.accuracy is not None:
@@ -39,7 +39,7 @@ def _solver(log: Log, scenario: Scenario) -> Solver:
     names = ("method", "rtol", "atol", "step")
     given = {name: log.attributes[name] for name in names if name in log.attributes}
     if given.get("method") not in METHODS:
-        raise LogError(f"{log.path}: attribute method: {given.get('method')!r} is no integrator of a motion.")
+        raise LogError(f"{log.path}: attribute method: unknown integrator {given.get('method')!r}.")
     budget = {"max_steps": scenario.solver.max_steps, "max_seconds": scenario.solver.max_seconds}
     try:
         return Solver(**given, **budget)
@@ -51,12 +51,12 @@ def _solver(log: Log, scenario: Scenario) -> Solver:
 
 def _check_samples(log: Log, scenario: Scenario) -> None:
     found, arm = log.trajectory, scenario.scene.arm
-    message = f"{log.path}: its trajectory is not that of its scenario:"
+    message = f"{log.path}: its trajectory does not fit its scenario:"
     if found["bend_angle"].shape[1] != arm.segments:
-        raise LogError(f"{message} {found['bend_angle'].shape[1]} segments of {arm.segments}.")
+        raise LogError(f"{message} {found['bend_angle'].shape[1]} segments, not {arm.segments}.")
     for name in ("elongation", "elongation_rate"):
         if (name in found) != ("elongation" in scenario.scene.coordinates):
-            raise LogError(f"{message} {name} is {'there' if name in found else 'missing'}.")
+            raise LogError(f"{message} {name} is {'unexpected' if name in found else 'missing'}.")
     time = found["time"]
     if time[0] != 0.0 or np.any(np.diff(time) <= 0.0):
-        raise LogError(f"{message} its times do not rise from 0.")
+        raise LogError(f"{message} its times do not increase from 0.")

@@ -159,7 +159,7 @@ class StreamedLog:
             self._close()
             left = ""
             if self.part.exists():
-                left = f" What was written before is in {self.part}: continuum-dyn resume {self.part}"
+                left = f" All samples so far are in {self.part}: continuum-dyn resume {self.part}"
             raise LogError(f"cannot write {self.path}: {reason(error)}.{left}") from error
 
 

@@ -64,10 +64,11 @@ class Scenario:
             name, pulled = cable.name, not cable.driven_by_length
             if pulled and not isinstance(profile, tuple) and (least := lower_bound(profile)) < 0:
                 raise InputError(
-                    f"cable '{name}': a cable cannot push; its tension comes down to {least:g} N."
+                    f"cable '{name}': a cable cannot push, and its tension falls to {least:g} N. "
+                    "Allowed: 0 or more."
                 )
         if self.chooses_mesh and self.accuracy is None:
-            raise InputError('subsegments = "auto" needs an accuracy to aim at. Add [accuracy] tip, in m.')
+            raise InputError('subsegments = "auto" needs an accuracy. Add [accuracy] tip, in m.')
         if self.accuracy is not None and not self.chooses_mesh and self.study.motion is None:
             raise InputError(
                 f'[accuracy] belongs to a study of motion, or to subsegments = "auto"; this is '
@@ -81,12 +82,12 @@ class Scenario:
         arm = self.scene.arm
         if not (arm.base_moves and len(self.base_motion) == len(arm.base_pose)):
             raise InputError(
-                f"{len(self.base_motion)} profiles given for the motion of a base that "
-                f"{'moves' if arm.base_moves else 'does not move'}. Give x, y and angle of one that moves."
+                f"{len(self.base_motion)} profiles given for the motion of "
+                f"{'a moving' if arm.base_moves else 'a fixed'} base. Give x, y and angle of a moving one."
             )
         if self.study.motion is None:
             raise InputError(
-                f'a base that moves belongs to a study of motion; this is "{self.study.kind}". '
+                f'a moving base belongs to a study of motion; this is "{self.study.kind}". '
                 "Give numbers for its x, y and angle."
             )
         for name, unit, start, profile in zip(
@@ -95,12 +96,12 @@ class Scenario:
             check_smooth(profile, f"[base] {name}", unit)
             if profile.initial != start:
                 raise InputError(
-                    f"[base] {name}: the arm's base is at {start:g} {unit}, its motion starts at "
+                    f"[base] {name}: the arm's base is at {start:g} {unit}, but its motion starts at "
                     f"{profile.initial:g}. Give one number for both."
                 )
         if arm.massless_nodes or (arm.core_density is None and self.chooses_mesh):
             raise InputError(
-                "a base that moves needs mass on every node, and some carry none. "
+                "a moving base needs mass at every node, and some have none. "
                 "Give the arm's core_density, or disk_mass."
             )
 
@@ -112,15 +113,15 @@ class Scenario:
             )
         if self.scene.without_potential:
             raise InputError(
-                'method = "midpoint" keeps the energy of scenes that have one; '
-                f'{" and ".join(self.scene.without_potential)} have no potential. Take method = "chain" or '
+                'method = "midpoint" is for scenes with a potential; without one: '
+                f'{" and ".join(self.scene.without_potential)}. Give method = "chain" or '
                 '"explicit".'
             )
         damping = dissipated_by(self.scene)
         if damping:
             raise InputError(
-                f'method = "midpoint" would leave out what dissipates: {", ".join(damping)}. Take method = '
-                f'"chain", or leave {" and ".join(damping)} out of [effects].'
+                f'method = "midpoint" is for scenes without damping; damped by: {", ".join(damping)}. '
+                f'Give method = "chain", or leave {" and ".join(damping)} out of [effects].'
             )
 
     @property

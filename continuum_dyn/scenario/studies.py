@@ -136,7 +136,7 @@ class MotionStudy(StudyKind):
         if stored > MAX_STORED:
             raise InputError(
                 f"{self.samples} samples of {scene.arm.segments} segments would store {stored:.3g} "
-                f"shapes. Allowed: {MAX_STORED:.3g}. Ask for fewer samples."
+                f"shapes. Allowed: {MAX_STORED:.3g}. Give fewer samples."
             )
 
 

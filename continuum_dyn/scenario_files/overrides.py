@@ -70,8 +70,8 @@ def _words(key: str, text: str) -> list[str]:
         inside: Any = read_toml(f"{key} = 0")
     except tomllib.TOMLDecodeError as error:
         raise InputError(
-            f"--set {_short(text)}: {_short(key)!r} is no key. Words of letters, digits, - and _ with "
-            "dots between them are, others in quotes: cables.'left one'.tension."
+            f"--set {_short(text)}: {_short(key)!r} is not a key. A key has words of letters, digits, - "
+            "and _ with dots between them, and other words in quotes: cables.'left one'.tension."
         ) from error
     while isinstance(inside, dict):
         ((word, inside),) = inside.items()
@@ -86,7 +86,7 @@ def _value(value: str, text: str) -> Any:
         if _WORD.fullmatch(value):
             return value
         raise InputError(
-            f"--set {_short(text)}: {_short(value)!r} is no value. Such are 2, 1e-3, true, [0.0, 1.0], "
+            f"--set {_short(text)}: {_short(value)!r} is not a value. Try such as 2, 1e-3, true, [0.0, 1.0], "
             """chain, '"two words"' and '{ profile = "step", before = 0, after = 2 }'."""
         ) from error
 

@@ -24,7 +24,7 @@ def read_text(path: Path, largest: int = MAX_FILE_SIZE) -> str:
             content = file.read(largest + 1)
         if content.startswith(LOG_START):
             raise InputError(
-                f"{path}: a log, and a scenario is expected. To get its own: "
+                f"{path}: a log, not a scenario. To get its scenario: "
                 f"continuum-dyn info {path} --scenario > NAME.toml"
             )
         if len(content) > largest:

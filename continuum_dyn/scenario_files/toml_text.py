@@ -19,15 +19,15 @@ LONGEST_SHOWN = 60
 MISTAKES = {
     "Invalid value": 'no value after =, such as 1.0, true, "text in quotes" or a list in [ ]',
     "Invalid statement": "neither KEY = VALUE nor a [table]",
-    "Expected newline": "more than one value, where numbers have a point and no comma",
+    "Expected newline": "more than one value; numbers have a decimal point, not a comma",
     "Expected '='": "a key without = and a value",
     "Expected ']'": "a [table] without its last bracket",
-    "Cannot overwrite": "a key that was given before",
-    "Cannot declare": "a table that was begun before; give it once, or [[NAME]] for each of a list",
-    "Cannot mutate": "a table that was closed before",
+    "Cannot overwrite": "a key given before",
+    "Cannot declare": "a table defined before; give it once, or [[NAME]] for each of a list",
+    "Cannot mutate": "a table that is already complete",
     "Unclosed": "a list without its last bracket",
     "Unterminated": "a text without its last quote",
-    "Duplicate": "a key that was given before",
+    "Duplicate": "a key given before",
     "Illegal character": "a character that a text on one line cannot hold",
 }
 """Words for the mistakes that Python's reader of TOML names, by how its messages begin."""
@@ -55,7 +55,7 @@ def toml_mistake(text: str, error: tomllib.TOMLDecodeError) -> str:
     if place is None or not 0 < int(place[1]) <= len(lines):
         return f"not a TOML file: {what or message}."
     line = shorten(lines[int(place[1]) - 1], LONGEST_SHOWN, placeholder=" ...")
-    return f"not a TOML file, line {place[1]}: {what or 'it is no TOML from column ' + place[2]}; read {line}"
+    return f"not a TOML file, line {place[1]}: {what or 'not TOML from column ' + place[2]}; read {line}"
 
 
 def toml_text(content: Mapping[str, Any]) -> str:

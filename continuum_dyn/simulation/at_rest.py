@@ -64,7 +64,7 @@ def _find_one_by_one(
                 with allowed():  # kernels may have to be compiled
                     points, growths = judge(Dynamics(scenario.scene), points)
             except KeyboardInterrupt:
-                reason = f"interrupted after {len(points)} of {len(inputs)} points, of unknown stability"
+                reason = f"interrupted after {len(points)} of {len(inputs)} points, stability unknown"
                 return Run(scenario, Outcome.INTERRUPTED, reason, points, solve_time=solve_time)
     outcome = Outcome.COMPLETED
     before: Equilibrium | None = None
@@ -84,7 +84,7 @@ def reason_to_stop(budget: Budget, interruption: Interruption) -> tuple[Outcome,
     """Outcome of a ramp that ended before its last point, and the reason in words."""
     if interruption.asked:
         return Outcome.INTERRUPTED, "interrupted"
-    return Outcome.BUDGET_EXCEEDED, f"{budget.seconds:g} s used up"
+    return Outcome.BUDGET_EXCEEDED, f"max_seconds = {budget.seconds:g} used up"
 
 
 def geometric_limit(

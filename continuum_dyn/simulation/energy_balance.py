@@ -22,8 +22,8 @@ def unbalanced_message(found: Trajectory, solver: Solver, length: float, chosen:
     if gap <= (TOLERATED + PER_TOLERANCE * tolerance / found.travel) * whole:
         return None
     return (
-        f"energies do not add up: {gap:.2g} J of at most {whole:.2g} J are not accounted for, so the motion "
-        f"is wrong. {_advice(solver, chosen)}"
+        f"energies do not balance: {gap:.2g} J are missing, of at most {whole:.2g} J, so the motion is "
+        f"wrong. {_advice(solver, chosen)}"
     )
 
 

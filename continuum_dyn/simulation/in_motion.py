@@ -111,7 +111,7 @@ def _integrate(
     """Integrate from the start, or from where an interrupted motion resumes."""
     gathered = Samples(motion.dynamics, None if sink is None else sink.add)
     if sink is not None:
-        message = "broken off while it ran"
+        message = "the run ended before it was complete"
         sink.begin(Run(motion.scenario, Outcome.INTERRUPTED, message, [motion.rest], solver=solver))
     if resumption is not None:
         return resumption.integrate(motion, monitor, gathered)
@@ -156,7 +156,7 @@ def _find_end(motion: Motion, trajectory: Trajectory) -> tuple[Equilibrium, str]
     if not _rests_at(near, motion, trajectory):
         return end, ""
     x, y, _ = near.tip
-    message = f"at another equilibrium than the one found from the start: tip at x {x:.4g} m, y {y:.4g} m"
+    message = f"at another equilibrium than the one next to the start: tip at x {x:.4g} m, y {y:.4g} m"
     return near, message if end.found and tip_gap(near.tip, [end.tip]) > within else ""
 
 
@@ -173,5 +173,6 @@ def _find_static_path(motion: Motion, trajectory: Trajectory, monitor: Monitor) 
     path = ramp(motion.statics, within_budget, motion.rest.coordinates)
     if len(path) < len(trajectory.inputs):
         outcome, reason = reason_to_stop(monitor.budget, monitor.interruption)
-        monitor.stop(outcome, f"{reason} after the motion, {len(path)} points on its path")
+        points = f"{len(path)} of {len(trajectory.inputs)} points"
+        monitor.stop(outcome, f"{reason} after the motion, with {points} of its static path")
     return path

@@ -78,10 +78,13 @@ def inspector(dynamics: Dynamics) -> Callable[[float, np.ndarray], tuple[Outcome
         if not np.isfinite(y).all():
             index = int(np.flatnonzero(~np.isfinite(y))[0])
             segment = index % dynamics.size // dynamics.dofs + 1
-            return Outcome.DIVERGED, f"segment {segment} is no longer finite at t = {t:.6g} s"
+            return Outcome.DIVERGED, f"coordinates of segment {segment} overflow at t = {t:.6g} s"
         if dynamics.clearance(y) <= 0.0:
             disk = dynamics.closest_disk(y)
-            return Outcome.GEOMETRY_LIMIT, f"holes meet before disk {disk} at t = {t:.6g} s"
+            return (
+                Outcome.GEOMETRY_LIMIT,
+                f"holes meet before disk {disk} at t = {t:.6g} s; reduce the inputs",
+            )
         return None
 
     return inspect

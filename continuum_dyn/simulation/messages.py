@@ -9,9 +9,10 @@ from statics.equilibria import Critical, Equilibrium
 from statics.outcome import Outcome
 
 NOT_CARRIED = (
-    "nothing drives it: does the core carry its weight and loads? See youngs_modulus (Pa) and its section"
+    "no tension acts: check that the core can carry its weight and loads (youngs_modulus in Pa, section)"
 )
 """Advice on an arm that has no equilibrium though no drive acts."""
+NO_GEOMETRY = "holes of a cable meet, or a segment has no length left"
 MOST_NAMED = 6
 """Largest number of folds, branchings or jumps that a message names."""
 
@@ -24,14 +25,13 @@ def failure_message(
     ``growth`` holds the modes that grow about it, ``limit`` the equilibrium at the geometric limit before it.
     """
     if growth is not None:
-        return f"{growth}, {point.drive}"
+        return f"unstable {point.drive}: {growth}"
     if point.outcome is Outcome.UNSTABLE_EQUILIBRIUM:
-        return f"unstable in {point.unstable_directions} directions {point.drive}"
+        return f"unstable {point.drive}, in {_directions(point)}"
     if point.outcome is Outcome.GEOMETRY_LIMIT:
-        meets = f"holes meet: a cable's length from hole to hole reaches zero; {_less(point)}"
-        return (
-            f"{point.drive} {meets}" if limit is None else f"{limit_message(limit)}, on the way {point.drive}"
-        )
+        if limit is None:
+            return f"no equilibrium {point.drive}: {NO_GEOMETRY}; {_less(point)}"
+        return f"{limit_message(limit)}; no equilibrium {point.drive}"
     lost = f"no equilibrium found {point.drive} in {point.iterations} iterations"
     return f"{lost}; {_slower(point)}"
 
@@ -49,12 +49,21 @@ def _less(point: Equilibrium) -> str:
 
 def _slower(point: Equilibrium) -> str:
     drives = _drives(point)
-    return f"try a ramp that comes there in small steps from a lower {drives}" if drives else NOT_CARRIED
+    return f"try a ramp to it in small steps from a lower {drives}" if drives else NOT_CARRIED
+
+
+def _inputs(point: Equilibrium) -> str:
+    return point.drive.removeprefix("at ")
+
+
+def _directions(point: Equilibrium) -> str:
+    count = point.unstable_directions
+    return "1 direction" if count == 1 else f"{count} directions"
 
 
 def limit_message(limit: Equilibrium) -> str:
     """Message about the drive at which a ramp reaches its geometric limit."""
-    return f"geometric limit {limit.drive}: there holes meet, or a length reaches zero"
+    return f"geometric limit {limit.drive}: {NO_GEOMETRY}"
 
 
 def points_message(points: Sequence[Equilibrium]) -> str:
@@ -62,11 +71,11 @@ def points_message(points: Sequence[Equilibrium]) -> str:
     parts = []
     for before, point in zip((None, *points), points, strict=False):
         if point.lost_at is not None and before is not None:
-            verb = "jumps" if point.jumped else "goes on along another path"
-            parts.append(f"{verb} between points {before.drive} and {point.drive}: {_event(point.lost_at)}")
+            verb = "jumps" if point.jumped else "continues on another path"
+            parts.append(f"{verb} between {_inputs(before)} and {_inputs(point)}: {_event(point.lost_at)}")
         elif point.left:
-            directions = point.left[-1].unstable_directions
-            parts.append(f"{point.drive} left an equilibrium that is unstable in {directions} directions")
+            unstable = f"an equilibrium that is unstable in {_directions(point.left[-1])}"
+            parts.append(f"left {unstable}, {point.drive}")
     return "; ".join(_shorten(parts))
 
 

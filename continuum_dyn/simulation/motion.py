@@ -27,7 +27,10 @@ class Motion:
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        self.scenario, self.study = scenario, scenario.require_motion("only a motion can be integrated")
+        self.scenario, self.study = (
+            scenario,
+            scenario.require_motion("only a study of motion can be integrated"),
+        )
         self.statics, self.dynamics = StaticSolver(scenario.scene), Dynamics(scenario.scene)
         self.timeline = cut_into_intervals(scenario.profiles, self.study.duration)
         self.samples = np.linspace(0.0, self.study.duration, self.study.samples)

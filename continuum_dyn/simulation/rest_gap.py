@@ -60,7 +60,7 @@ def unsettled_message(
         text = f"the tip is {away}, and {moves}" if speed >= limit else f"the tip {moves}, but is {away}"
     creeps = ""
     if gap < limit and np.isfinite(slip_speed):
-        creeps = f"; cables that stick creep, less with a smaller slip_speed than {slip_speed:g} m/s"
+        creeps = f"; sticking cables creep, and less with a slip_speed below {slip_speed:g} m/s"
     return f"{text}; {_settles_at(time, np.maximum(gaps, speeds), within)}{creeps}"
 
 
@@ -68,10 +68,10 @@ def _settles_at(time: np.ndarray, sizes: np.ndarray, within: float) -> str:
     """The time at which what decays from the second third of a motion to the last would be small enough."""
     third = sizes.size // 3
     if third == 0:
-        return "more samples would tell when it settles"
+        return "increase samples to estimate when it settles"
     before, after = float(sizes[third : 2 * third].max()), float(sizes[-third:].max())
     if not after < 0.9 * before:
-        return "it does not decay"
+        return "the motion does not decay"
     rate = log(before / after) / float(time[-third] - time[third])
     settled = max(time[-1], time[-third] + log(max(after / within, 1.0)) / rate)
-    return f"at the decay so far it settles after some {settled:.2g} s"
+    return f"at the decay rate so far it settles after about {settled:.2g} s"

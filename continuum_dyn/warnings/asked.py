@@ -31,7 +31,7 @@ def unused_numbers(scenario: Scenario) -> Iterator[str]:
         is_zero = not np.any(getattr(arm, name) if each is None else each)
         if arm.knows(name) and not is_zero and not (preset or of_core or any(map(scene.has, effects))):
             would = " or ".join(filter(None, (", ".join(effects[:-1]), effects[-1])))
-            yield f"[arm] {name} is given, and no effect uses it: {would} would. Add one, or leave it out."
+            yield f"[arm] {name} has no effect: only {would} use it. Add one to [effects], or leave it out."
 
 
 def core_counted_twice(scenario: Scenario) -> Iterator[str]:
@@ -39,8 +39,8 @@ def core_counted_twice(scenario: Scenario) -> Iterator[str]:
     arm: Arm = scenario.scene.arm
     if arm.core_density is not None and arm.disk_mass == RONE2012["disk_mass"]:
         yield (
-            "core_density gives the core a mass of its own, and the preset's disk_mass, "
-            f"{arm.disk_mass:g} kg, holds the core's already: it counts twice. Give the disks' alone."
+            "the core's mass counts twice: by core_density, and in the preset's disk_mass, "
+            f"{arm.disk_mass:g} kg. Give the disks' own disk_mass."
         )
 
 
@@ -53,19 +53,18 @@ def drives_without_a_change(scenario: Scenario) -> Iterator[str]:
     for name, changes in drives:
         if changes is not None and changes[0] >= study.duration:
             yield (
-                f"{name} changes at {changes[0]:g} s, and the run ends at {study.duration:g} s: none of it "
-                "shows. Make the [study] longer, or the change earlier."
+                f"{name} changes at {changes[0]:g} s, after the end of the run at {study.duration:g} s. "
+                "Make the [study] longer, or the change earlier."
             )
         elif changes is not None and study.duration < changes[1] < inf:
             yield (
-                f"{name} changes until {changes[1]:g} s, and the run ends at {study.duration:g} s: the rest "
-                "does not show."
+                f"{name} changes until {changes[1]:g} s, after the end of the run at {study.duration:g} s."
             )
     if study.settles and drives and not any(changes for _, changes in drives):
-        yield 'a step response to constant inputs: nothing steps. Give a tension with profile = "step".'
+        yield 'a step response with constant inputs. Give a tension with profile = "step".'
     if study.settles and not dissipated_by(scenario.scene):
         yield (
-            "nothing takes energy from the motion, so that it cannot settle. Add material_damping, "
+            "without damping the motion cannot settle. Add material_damping, "
             "linear_drag or mass_damping to [effects]."
         )
 

@@ -40,15 +40,17 @@ def strained(run: "Run") -> Iterator[str]:
     strain = bending_strain(run)
     if strain is not None and strain > LARGEST_STRAIN:
         yield (
-            f"the core bends to a strain of {100 * strain:.3g} %, and few materials stay elastic above "
-            f"{100 * LARGEST_STRAIN:g} %: a thinner core of the same stiffness bends as far with less."
+            f"the core bends to a strain of {100 * strain:.3g} %; few materials stay elastic above "
+            f"{100 * LARGEST_STRAIN:g} %. A thinner core of the same stiffness has less strain."
         )
 
 
 def coarser_than_the_travel(run: "Run") -> Iterator[str]:
     """Warn of tolerances that are larger than all that moves."""
     scenario = run.scenario
-    if run.trajectory is None or run.trajectory.travel < STILL * scenario.scene.arm.total_length:
+    if run.trajectory is None or not run.outcome.answered:
+        return
+    if run.trajectory.travel < STILL * scenario.scene.arm.total_length:
         return
     travel = run.trajectory.travel
     named = []
@@ -60,8 +62,8 @@ def coarser_than_the_travel(run: "Run") -> Iterator[str]:
         if distance > travel:
             in_mm = f" {distance:g} mm are {distance / 1e3:g} m." if distance / 1e3 < travel else ""
             yield (
-                f"{name} = {distance:.3g} m is above all that the arm moves, {travel:.3g} m: it says nothing."
-                f"{in_mm} Give less than that."
+                f"{name} = {distance:.3g} m is longer than the whole motion, {travel:.3g} m, and checks "
+                f"nothing.{in_mm} Give less than {travel:.1g}."
             )
 
 

@@ -38,5 +38,5 @@ def describe_coarse_samples(columns: Mapping[str, np.ndarray]) -> str:
     per_period = (time.size - 1) / (duration * frequency)
     return (
         f"too few: {time.size} in {duration:g} s, {per_period:.2g} per period of a motion at about "
-        f"{frequency:.3g} Hz. What is drawn from them is not the motion; try samples = {int(needed) + 1}"
+        f"{frequency:.3g} Hz. Plots of them do not show the motion; try samples = {int(needed) + 1}"
     )

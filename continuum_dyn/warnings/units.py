@@ -53,7 +53,7 @@ def far_holes(scenario: Scenario) -> Iterator[str]:
         offset = float(np.abs(cable.holes(arm.disks)).max())
         if offset > arm.total_length:
             yield (
-                f"cable '{cable.name}': a hole_offset of {offset:g} m is beyond the arm's length, "
+                f"cable '{cable.name}': a hole_offset of {offset:g} m is longer than the arm, "
                 f"{arm.total_length:g} m. {offset:g} mm are {offset / 1e3:g} m."
             )
 
@@ -67,7 +67,7 @@ def turns_in_degrees(scenario: Scenario) -> Iterator[str]:
     for name, angle in named:
         if abs(angle) > 2.0 * pi:
             yield (
-                f"{name}: {angle:g} rad are more than a full turn. {angle:g} degrees are "
+                f"{name}: {angle:g} rad is more than a full turn. {angle:g} degrees are "
                 f"{radians(angle):.5g} rad."
             )
 
@@ -76,10 +76,7 @@ def beyond_bending(scenario: Scenario) -> Iterator[str]:
     """Warn of loads far beyond what the core's bending carries."""
     scene, arm = scenario.scene, scenario.scene.arm
     if not scene.has("bending"):
-        yield (
-            "nothing resists bending: [effects] has no bending, so the arm hangs like a chain. "
-            "Add bending = {}."
-        )
+        yield ("nothing resists bending, so the arm hangs like a chain. Add bending = {} to [effects].")
         return
     stiffness = float(np.min(arm.segment_columns()["bending_stiffness"]))
     carried = stiffness / arm.total_length**2

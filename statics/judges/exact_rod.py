@@ -119,7 +119,7 @@ def exact_rod(scene: Scene, tension: object = None) -> RodShape:
     """
     values = scene.check_tension(tension)[: scene.cables]
     if scene.arm.base_moves:
-        raise InputError("the exact rod stands on a base that does not move.")
+        raise InputError("the exact rod has a fixed base; leave out the motion of the base.")
     _check(scene.at_rest)
     rod = _rod(scene, values)
     loads = _follow_loads(rod)
@@ -140,22 +140,22 @@ def _check(scene: Scene) -> None:
     unknown = [effect.name for effect in scene.effects if effect.name not in KNOWN_EFFECTS]
     if unknown:
         raise InputError(
-            f"the exact rod does not know: {', '.join(unknown)}. Known: {', '.join(KNOWN_EFFECTS)}."
+            f"the exact rod has no effect {', '.join(unknown)}. Its effects: {', '.join(KNOWN_EFFECTS)}."
         )
     if scene.arm.holes_differ or any(values is not None for values in vars(scene.arm.each).values()):
-        raise InputError("the exact rod knows arms of equal segments only.")
+        raise InputError("the exact rod is for arms of equal segments only.")
     if scene.driven_loads:
-        raise InputError("the exact rod does not know loads that change in time.")
+        raise InputError("the exact rod has no loads that change in time.")
     if any(kind.coupled for kind in scene.cable_kinds):
-        raise InputError("the exact rod knows cables of given tension, without friction.")
+        raise InputError("the exact rod has cables of given tension only, without friction.")
     if any(cable.start for cable in scene.arm.cables[: scene.cables]):
-        raise InputError("the exact rod knows cables that start at the base.")
+        raise InputError("the exact rod has only cables that start at the base.")
     if scene.has_followers:
-        raise InputError("the exact rod does not know loads that turn with their disk.")
+        raise InputError("the exact rod has no follower loads.")
     if scene.arm.payloads:
-        raise InputError("the exact rod does not know payloads.")
+        raise InputError("the exact rod has no payloads.")
     if not scene.has(Bending.name):
-        raise InputError("the exact rod needs the effect 'bending', which the scene does not have.")
+        raise InputError("the exact rod needs effect 'bending'. Add it to the scene.")
 
 
 def _rod(scene: Scene, tension: np.ndarray) -> _Rod:
@@ -223,7 +223,9 @@ def _follow_loads(rod: _Rod) -> np.ndarray:
             step /= 2
             if step < SMALLEST_LOAD_STEP:
                 ending = _holes_met(rod, loads) or reason
-                raise RodError(f"the exact rod ends at {reached:.2%} of the loads: {ending}.") from reason
+                raise RodError(
+                    f"the exact rod has a solution only up to {reached:.2%} of the loads: {ending}."
+                ) from reason
         else:
             reached, step = part, 2 * step
     return loads
@@ -247,14 +249,14 @@ def _balanced(rod: _Rod, start: np.ndarray) -> np.ndarray:
             _check_geometry(rod, start, loads)
             _check_stability(rod, loads)
             return loads
-    raise RodError("beyond it no balance of the disks was found")
+    raise RodError("above, no equilibrium was found")
 
 
 def _solved(matrix: np.ndarray, right_side: np.ndarray) -> np.ndarray:
     try:
         return np.linalg.solve(matrix, right_side)
     except np.linalg.LinAlgError:
-        raise RodError("there the arm is neutrally stable") from None
+        raise RodError("there, the arm is neutrally stable") from None
 
 
 def _check_geometry(rod: _Rod, before: np.ndarray, loads: np.ndarray) -> None:
@@ -263,13 +265,13 @@ def _check_geometry(rod: _Rod, before: np.ndarray, loads: np.ndarray) -> None:
     pose = _node_poses(ends)
     turn = pose[:, 2] - _node_poses(_hung_ends(rod, before)[1])[:, 2]
     if np.abs(turn).max() > MAX_TURN:
-        raise RodError("beyond it the arm snaps to another shape")
+        raise RodError("above, the arm snaps to another shape")
     if any((_gaps(cable, pose[:: rod.parts]) <= 0).any() for cable in rod.cables):
-        raise RodError("beyond it holes would pass each other")
+        raise RodError("above, holes would pass each other")
     at_end = loads[:, :2] - _weight_in_frame(rod, angles)
     axial = np.concatenate([loads[:, 0], (at_end * _tangents(ends)).sum(axis=1)])
     if (1 + rod.softness * axial <= 0).any():
-        raise RodError("there the core is crushed to nothing")
+        raise RodError("there, the core is compressed to zero length")
 
 
 def _check_stability(rod: _Rod, loads: np.ndarray) -> None:
@@ -278,14 +280,14 @@ def _check_stability(rod: _Rod, loads: np.ndarray) -> None:
     compliance = _solved(unbalance_by_loads.T, pose_by_loads.T)
     eigenvalues = np.linalg.eigvalsh((compliance + compliance.T) / 2)
     if eigenvalues[0] < NEGATIVE * np.abs(eigenvalues).max():
-        raise RodError("beyond it the arm is not stable")
+        raise RodError("above, the arm is not stable")
 
 
 def _holes_met(rod: _Rod, loads: np.ndarray) -> str | None:
     """Name of the cable of which two holes have all but met, as the end of a sentence."""
     pose = _node_poses(_hung_ends(rod, loads)[1])[:: rod.parts]
     met = [cable.name for cable in rod.cables if _gaps(cable, pose).min() < MET * rod.parts]
-    return f"there the holes of cable '{met[0]}' meet" if met else None
+    return f"there, holes of cable '{met[0]}' meet" if met else None
 
 
 def _newton_system(rod: _Rod, loads: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -354,7 +356,7 @@ def _piece_ends(rod: _Rod, loads: np.ndarray, angles: np.ndarray) -> np.ndarray:
             rates = stretch * cosine, stretch * sine, rod.rest_bend + carried, -unbending
             x, y, theta, change = (over_points(rate, TO_THE_END)[0] for rate in rates)
             return np.stack([x, y, theta, moment + change], axis=-1)
-    raise RodError("there a piece of the core bends too far to be resolved")
+    raise RodError("there, a part of the core bends too sharply to be resolved")
 
 
 def _same(moments: np.ndarray, before: np.ndarray) -> bool:

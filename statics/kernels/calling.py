@@ -8,7 +8,7 @@ import ctypes
 
 import numpy as np
 
-NOT_CONTIGUOUS = "compiled code takes contiguous arrays of floats: it knows no strides"
+NOT_CONTIGUOUS = "compiled code takes contiguous arrays of floats only, without strides"
 
 FLOAT = np.dtype(float)
 addressof, from_buffer = ctypes.addressof, ctypes.c_char.from_buffer

@@ -84,7 +84,9 @@ def declared_kinds(function: Callable[..., Any]) -> dict[str, str | None]:
     """
     code = function.__code__
     if code.co_flags & (inspect.CO_VARARGS | inspect.CO_VARKEYWORDS) or code.co_kwonlyargcount:
-        raise _refusal(function, code.co_firstlineno, code.co_name, "takes more than parameters in order")
+        raise _refusal(
+            function, code.co_firstlineno, code.co_name, "has parameters other than positional ones"
+        )
     annotations = function.__annotations__
     return {name: SCALAR_KINDS.get(annotations.get(name)) for name in code.co_varnames[: code.co_argcount]}
 
@@ -366,7 +368,7 @@ class _Code:
         """Address of an array's number."""
         viewed = self.view(self.value(target.value), target)
         if viewed.kind != ArrayKind(0):
-            raise self.refusal(target, "is no single number")
+            raise self.refusal(target, "is not a single number")
         return viewed.cells[0]
 
     def store(self, place: str, value: Value, node: ast.AST) -> None:
@@ -381,7 +383,9 @@ class _Code:
             case ast.Name(id=name) if name in self.variables:
                 return self.variable(name)
             case ast.Name(id=name) if name in self.local:
-                raise self.refusal(node, "is read before it is assigned, or is no variable of the function's")
+                raise self.refusal(
+                    node, "is read before it is assigned, or is not a variable of the function"
+                )
             case ast.Constant() | ast.Name() | ast.Attribute() if _is_number(known := self.known(node)):
                 return _constant(known)
             case ast.Attribute(value=owner, attr=name):
@@ -471,7 +475,7 @@ class _Code:
         """An index, the end of a slice, or a length: an integer that is not seen to be negative."""
         value = given or self.value(node)
         if value.kind != INT or (value.literal or 0) < 0:
-            raise self.refusal(node, "is no integer from 0 on")
+            raise self.refusal(node, "is not an integer of 0 or more")
         return value.cells[0]
 
     def shaped(self, pointer: str, node: ast.Call) -> Value:
@@ -544,7 +548,7 @@ class _Code:
         left = exponent.literal
         if left is None or not 0 < left <= LARGEST_POWER:
             if base.kind == exponent.kind == INT:
-                raise self.refusal(node, "is no power by a small integer that stands in the text")
+                raise self.refusal(node, "is not a power with a small integer literal")
             _, (first, second) = self.alike([base, exponent], node)
             return self.new(FLOAT, f"call double @pow(double {first}, double {second})")
         kind, (square,) = self.alike([base], node)
@@ -602,7 +606,7 @@ class _Code:
         """The result of a call, None of one that returns nothing."""
         function = self.known(node.func)
         if node.keywords:
-            raise self.refusal(node, "has named arguments, which cannot be lowered")
+            raise self.refusal(node, "has keyword arguments, which cannot be lowered")
         if function is np.empty or function is np.zeros:
             return self.workspace(node)
         if function is None and isinstance(node.func, ast.Attribute) and node.func.attr == "reshape":
@@ -665,7 +669,7 @@ class _Code:
         if len(values) != len(declared):
             raise self.refusal(node, f"gives {len(values)} arguments, not {len(declared)}")
         if function in self.unit.open:
-            raise self.refusal(node, "calls what it stands in, which cannot be lowered")
+            raise self.refusal(node, "is a recursive call, which cannot be lowered")
         given = [
             value if kind is None else Value(kind, (self.converted(value, kind, node),))
             for value, kind in zip(values, declared.values(), strict=True)
@@ -691,7 +695,7 @@ class _Code:
     def workspace(self, node: ast.Call) -> Value:
         """A new array, which ends with the function."""
         if self.loops or len(node.args) != 1:
-            raise self.refusal(node, "is not by its shape alone, or stands in a loop")
+            raise self.refusal(node, "has arguments besides its shape, or is in a loop")
         slot = self.slot("ptr")
         self.stack.append(f"  store ptr null, ptr {slot}")
         self.workspaces.append(slot)
@@ -714,7 +718,7 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
     except (OSError, ValueError, SyntaxError, KeyError):
         tree = None
     if tree is None or tree.name != code.co_name:
-        raise _refusal(function, code.co_firstlineno, code.co_name, "is no function that stands there")
+        raise _refusal(function, code.co_firstlineno, code.co_name, "is not a function found in that file")
     return tree
 
 

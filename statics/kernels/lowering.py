@@ -231,7 +231,7 @@ class _Code:
         if len(node.args) != len(function.args.args) or isinstance(returned, ast.Tuple) != of_several:
             raise _refusal(node)
         if name in self.open:
-            raise _refusal(node, "calls what it stands in, and ")
+            raise _refusal(node, "is a recursive call and ")
         outside = self.scope
         values = [self.value(argument) for argument in node.args]
         self.scope = dict(zip((arg.arg for arg in function.args.args), values, strict=True))
@@ -283,7 +283,7 @@ class _Code:
             if isinstance(target, ast.Name)
         ]
         if len(names) != len(statements):
-            raise LoweringError("an arm of an if may only assign to names")
+            raise LoweringError("a branch of an if may only assign to names")
         for statement in statements:
             self.statement(statement)
         return {name: str(self.scope[name]) for name in names}
@@ -438,5 +438,5 @@ def _refusal(node: ast.AST, role: str = "") -> LoweringError:
     return LoweringError(
         f"line {line}: '{ast.unparse(node)}' {role}cannot be lowered. Allowed: assignments, + - * / **, "
         f"array[i, column], min, max, abs, {', '.join(f'math.{name}' for name in (*INTRINSICS, *LIBRARY))}, "
-        "a conditional expression, an if of two arms, and calls of functions above."
+        "a conditional expression, an if with two branches, and calls of functions above."
     )

@@ -55,5 +55,5 @@ def test_base_moves_faster_too() -> None:
 
 
 def test_ramp_of_equilibria_has_no_pace() -> None:
-    with pytest.raises(InputError, match="only a motion has a pace"):
+    with pytest.raises(InputError, match="only a motion can be run at other rates"):
         at_pace(load_scenario(SCENARIOS / "tension_ramp.toml"), 2.0)

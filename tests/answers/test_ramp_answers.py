@@ -136,7 +136,7 @@ def test_ramp_of_equilibria_has_no_lag_and_says_why(tmp_path: Path) -> None:
     found = ramp_answers(read_log(log_of(SCENARIOS / "tension_ramp.toml", tmp_path)), ERROR)
     assert found.figures["tip_lag"] is None
     assert "ramp of equilibria" in found.missing["tip_lag"]
-    assert found.missing["static_hysteresis_area"] == "the drive does not come back"
+    assert found.missing["static_hysteresis_area"] == "the input does not return"
     assert len(ramp_plot.ramp("up only", found).axes) == 1
 
 
@@ -155,9 +155,9 @@ def test_logs_that_ramp_nothing_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="Add static_path = true"):
         ramp_answers(answers(), ERROR)
     path = ("samples = 11", "samples = 11\nstatic_path = true")
-    with pytest.raises(InputError, match="nothing is ramped"):
+    with pytest.raises(InputError, match="not a log of a ramp"):
         ramp_answers(answers(path), ERROR)
-    with pytest.raises(InputError, match=r"tension of upper jumps at 0.3 s.*Ask settle"):
+    with pytest.raises(InputError, match=r"tension of upper jumps at 0.3 s.*use continuum-dyn settle"):
         ramp_answers(answers(path, ("after = 1.0", "after = 1.0, at = 0.35")), ERROR)
 
 

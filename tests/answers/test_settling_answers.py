@@ -97,7 +97,7 @@ def test_gap_is_that_of_the_run(step_log: Path, step: Settling) -> None:
 def test_arm_that_creeps_has_no_frequency_and_says_why(tmp_path: Path) -> None:
     found = settled(edited(STEP, tmp_path, ("1.2e-3", "3e-2")), tmp_path)
     assert found.figures["frequency"] is None
-    assert "without swinging" in found.missing["damping_ratio"]
+    assert "without oscillating" in found.missing["damping_ratio"]
     assert found.figures["mode_damping_ratio"] == pytest.approx(2.184, abs=1e-3)
     assert found.figures["settling_time_1"] is not None
     assert settling_plot.settling("creeps", found).axes
@@ -116,19 +116,19 @@ def test_samples_too_far_apart_for_the_mode_are_no_frequency(tmp_path: Path) -> 
     changes = (("samples = 1001", "samples = 93"), ("duration = 1.0", "duration = 4.0"))
     found = settled(edited(LIGHT, tmp_path, *changes), tmp_path)
     assert found.figures["frequency"] is None
-    assert "Ask for more samples" in found.missing["frequency"]
+    assert "Increase [study] samples" in found.missing["frequency"]
     assert found.figures["rise_time"] is None
     assert found.figures["mode_frequency"] == pytest.approx(22.987, abs=1e-3)  # Hz
 
 
 def test_logs_that_settle_to_nothing_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="nothing moves"):
+    with pytest.raises(InputError, match="not a log of a motion"):
         settled(load_scenario(SCENARIOS / "tension_ramp.toml"), tmp_path)
     sine = 'profile = "sine", mean = 0.0, amplitude = 0.0, frequency = 2.0'
-    with pytest.raises(InputError, match="nothing that drives this motion changes"):
+    with pytest.raises(InputError, match="no input changes before the motion ends"):
         settled(edited(STEP, tmp_path, ('profile = "step", before = 0.0, after = 1.0', sine)), tmp_path)
     sine = 'profile = "sine", mean = 1.0, amplitude = 0.1, frequency = 2.0'
-    with pytest.raises(InputError, match="still changes when it ends, at 1 s"):
+    with pytest.raises(InputError, match="inputs still change when the motion ends, at 1 s"):
         settled(edited(STEP, tmp_path, ('profile = "step", before = 0.0, after = 1.0', sine)), tmp_path)
 
 

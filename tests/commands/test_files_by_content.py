@@ -20,10 +20,10 @@ LOG = b"\x89HDF\r\n\x1a\n" + bytes(2000)
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("arm.toml", SCENARIO, "a scenario, and no log. Run it first: continuum-dyn run"),
-        ("arm.h5", SCENARIO, "a scenario, and no log. Run it first"),
+        ("arm.toml", SCENARIO, "a scenario, not a log. Run it first: continuum-dyn run"),
+        ("arm.h5", SCENARIO, "a scenario, not a log. Run it first"),
         ("data.csv", b"time,tension\n0,1\n", "not a log of continuum-dyn. Logs are written by"),
-        ("empty.h5", b"", "an empty file, and no log"),
+        ("empty.h5", b"", "an empty file, not a log"),
         ("cut.h5", LOG, "damaged. If it is a log, run its scenario again"),
     ],
 )
@@ -60,15 +60,14 @@ def test_run_takes_logs_and_scenarios_of_any_name(tmp_path: Path) -> None:
     (tmp_path / "arm.h5").rename(tmp_path / "arm.data")
     again = runner.invoke(app, ["run", str(tmp_path / "arm.data"), "--out", str(tmp_path)])
     assert again.exit_code == 0
-    assert "the same as" in again.stdout
+    assert "same as" in again.stdout
 
 
 def test_play_without_a_display_names_what_to_do_instead() -> None:
     words = "Error: winit EventLoopError: neither WAYLAND_DISPLAY nor DISPLAY is set."
-    assert _why_no_window(words, 1) == "there is no display here to open the rerun viewer on."
+    assert _why_no_window(words, 1) == "no display is available for the rerun viewer."
     assert (
-        _why_no_window("no such wgpu adapter.", 1)
-        == "the rerun viewer cannot run here: no such wgpu adapter."
+        _why_no_window("no such wgpu adapter.", 1) == "the rerun viewer cannot start: no such wgpu adapter."
     )
     assert "--web" in viewer.INSTEAD
     assert "--save" in viewer.INSTEAD

@@ -70,7 +70,7 @@ def test_run_numbers_variants_and_takes_a_name(tmp_path: Path) -> None:
     assert logs == ["tension_ramp.h5", "tension_ramp_2.h5", "third.h5", "tension_ramp.h5"]
     assert read_log(tmp_path / "tension_ramp_2.h5").title == "other"
     shown = runner.invoke(app, ["run", RAMP, "--out", str(tmp_path), "--name", "third"])
-    assert "third.h5, in place of a log of another scenario" in shown.stdout
+    assert "third.h5, replaces the log of another scenario" in shown.stdout
     refused = runner.invoke(app, ["run", RAMP, str(SCENARIOS / "unactuated.toml"), "--name", "x"])
     assert refused.exit_code == 2
 

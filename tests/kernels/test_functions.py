@@ -588,11 +588,11 @@ def test_functions_that_stand_in_no_file_are_refused(tmp_path: Path) -> None:
     """Or no longer."""
     module: dict[str, Any] = {"compiled": compiled}
     exec(compile("@compiled\ndef f(x):\n    return x\n", "<input>", "exec"), module)
-    with pytest.raises(LoweringError, match="'f' is no function that stands there"):
+    with pytest.raises(LoweringError, match="'f' is not a function found in that file"):
         lower_function(module["f"].python, [FLOAT])
     function = defined("\n@compiled\ndef f(x):\n    return x\n", tmp_path)
     (tmp_path / "made_0.py").write_text("\n@compiled\ndef g(x):\n    return -x\n")
-    with pytest.raises(LoweringError, match="'f' is no function that stands there"):
+    with pytest.raises(LoweringError, match="'f' is not a function found in that file"):
         function(1.0)
 
 

@@ -92,7 +92,7 @@ def test_accuracy_that_the_budget_does_not_allow_ends_with_what_was_reached() ->
     run = simulate(scenario, budget=Budget(steps=450))
     assert run.outcome is Outcome.BUDGET_EXCEEDED
     assert "not reached" in run.message
-    assert "steps taken" in run.message
+    assert "max_steps = " in run.message
     assert run.trajectory is not None
     assert run.trajectory.time[-1] == 1.0
     assert run.tip_error is not None

@@ -282,11 +282,11 @@ def test_impulse_is_refused_with_what_to_try(hit: Profile, told: str) -> None:
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (lambda _: {"base_motion": ()}, "0 profiles given for the motion of a base that moves"),
-        (lambda _: {"study": EquilibriumStudy()}, "a base that moves belongs to a study of motion"),
+        (lambda _: {"base_motion": ()}, "0 profiles given for the motion of a moving base"),
+        (lambda _: {"study": EquilibriumStudy()}, "a moving base belongs to a study of motion"),
         (lambda _: {"base_motion": (STILL, Constant(0.1), STILL)}, r"\[base\] y: the arm's base is at 0"),
         (lambda shaken: {"scene": mounted(shaken, subsegments=2)}, "Give the arm's core_density"),
-        (lambda shaken: {"scene": mounted(shaken, base=None)}, "a base that does not move"),
+        (lambda shaken: {"scene": mounted(shaken, base=None)}, "a fixed base"),
     ],
 )
 def test_base_that_does_not_fit_is_refused(

@@ -268,7 +268,8 @@ def test_fastest_frequency_is_the_same_by_iteration(
 
 def test_damped_scene_is_refused() -> None:
     with pytest.raises(
-        InputError, match=r'leave out what dissipates: material_damping\. Take method = "chain"'
+        InputError,
+        match=r'is for scenes without damping; damped by: material_damping\. Give method = "chain"',
     ):
         release(1.0, 3, scene=moving(rone2012()))
     free = stiff()

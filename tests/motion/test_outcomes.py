@@ -56,7 +56,7 @@ def test_motion_whose_energies_do_not_add_up_is_no_answer() -> None:
     release, study = (Step(before=2.0, after=0.0),), MotionStudy(0.1, samples=11)
     run = simulate(Scenario(free, release, study, Solver("chain", rtol=1e-4)))
     assert run.outcome is Outcome.DIVERGED
-    assert "energies do not add up" in run.message
+    assert "energies do not balance" in run.message
     assert run.trajectory is not None
     assert run.trajectory.time[-1] == 0.1
     kept = simulate(Scenario(free, release, study, Solver("chain", rtol=1e-8)))
@@ -85,12 +85,13 @@ def test_ramp_that_leaves_the_equilibria_says_at_which_tension() -> None:
 def test_budget_of_steps_ends_the_run() -> None:
     run = simulate(step_to(1.0), budget=Budget(steps=20))
     assert run.outcome is Outcome.BUDGET_EXCEEDED
-    assert "20 steps" in run.message
+    assert "max_steps = 20 reached" in run.message
     assert_kept(run, 0.05)
 
 
 @pytest.mark.parametrize(
-    ("bound", "told"), [({"max_steps": 20}, "20 steps"), ({"max_seconds": 1e-9}, "1e-09 s")]
+    ("bound", "told"),
+    [({"max_steps": 20}, "max_steps = 20 "), ({"max_seconds": 1e-9}, "max_seconds = 1e-09 ")],
 )
 def test_budgets_of_the_scenario_end_the_run(bound: dict[str, Any], told: str) -> None:
     scenario = replace(step_to(1.0), solver=Solver("LSODA", **bound))
@@ -134,7 +135,7 @@ def test_budget_of_seconds_ends_a_step_that_goes_on(method: Method) -> None:
     """One step of a large arm by a method with dense matrices takes minutes."""
     run = simulate(step_to(1.0, method=method), budget=Budget(seconds=0.0))
     assert run.outcome is Outcome.BUDGET_EXCEEDED
-    assert "used up by t = 0 s" in run.message
+    assert "used up at t = 0 s" in run.message
     assert run.trajectory is not None
     assert run.trajectory.counters["steps"] == 0
 
@@ -144,7 +145,7 @@ def test_budget_of_seconds_ends_a_ramp(path: Literal["stable", "arc_length"]) ->
     ramp = Scenario(rone2012(), (tuple(np.linspace(0.0, 2.0, 20)),), RampStudy(path=path))
     run = simulate(ramp, budget=Budget(seconds=0.0))
     assert run.outcome is Outcome.BUDGET_EXCEEDED
-    assert "0 s used up" in run.message
+    assert "max_seconds = 0 used up" in run.message
     assert len(run.equilibria) < 20
 
 
@@ -154,7 +155,7 @@ def test_budget_of_seconds_counts_the_static_path_of_a_motion(monkeypatch: pytes
     scenario = Scenario(moving(rone2012()), (Constant(1.0),), MotionStudy(0.01, samples=9, static_path=True))
     run = simulate(scenario)
     assert run.outcome is Outcome.BUDGET_EXCEEDED
-    assert "after the motion, 0 points" in run.message
+    assert "after the motion, with 0 of " in run.message
     assert_kept(run, 0.01)
 
 

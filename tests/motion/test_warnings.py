@@ -44,17 +44,17 @@ ODD = {
     "nothing takes energy": (
         STEP,
         ["effects.material_damping.retardation_time=0.0", "study.duration=0.01"],
-        "nothing takes energy from the motion",
+        "without damping the motion cannot settle",
     ),
     "a change cut short": (
         STEP,
         ['cables.upper.tension={profile="ramp",before=0,after=1,start=0.5,end=2}'],
-        "changes until 2 s, and the run ends at 1 s: the rest does not show",
+        "changes until 2 s, after the end of the run at 1 s",
     ),
     "an accuracy in mm": (
         STEP,
         ["accuracy.tip=0.5", "study.duration=0.1"],
-        "[accuracy] tip = 0.5 m is above all",
+        "[accuracy] tip = 0.5 m is longer than the whole motion",
     ),
     "milliseconds": (
         STEP,
@@ -64,12 +64,16 @@ ODD = {
     "a change after the end": (
         STEP,
         ["cables.upper.tension.at=5"],
-        "changes at 5 s, and the run ends at 1 s",
+        "changes at 5 s, after the end of the run at 1 s",
     ),
-    "nothing steps": (STEP, ["cables.upper.tension=1.0"], "nothing steps"),
-    "a disk's mass in vain": (SCENARIOS / "unactuated.toml", ["arm.disk_inertia=1e-8"], "no effect uses it"),
+    "nothing steps": (STEP, ["cables.upper.tension=1.0"], "with constant inputs"),
+    "a disk's mass in vain": (
+        SCENARIOS / "unactuated.toml",
+        ["arm.disk_inertia=1e-8"],
+        "disk_inertia has no effect",
+    ),
     "the core's mass twice": (STEP, ["arm.core_density=8000.0"], "counts twice"),
-    "settled from the start": (STEP, ["study.settled_within=0.5"], "above all that the arm moves"),
+    "settled from the start": (STEP, ["study.settled_within=0.5"], "longer than the whole motion"),
     "a core that yields": (SCENARIOS / "follower_tip.toml", [], "a strain of 2.03 %"),
     "samples too far apart": (STEP, ["study.samples=30"], "too few: 30 in 1 s"),
     "explicit steps of a stiff arm": (

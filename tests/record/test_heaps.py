@@ -79,7 +79,7 @@ def test_damaged_heap_that_is_referenced_is_refused(
     content = bytearray(path.read_bytes())
     damage(content, content.find(SIGNATURE))
     path.write_bytes(content)
-    with pytest.raises(LogError, match="its texts are damaged"):
+    with pytest.raises(LogError, match="the texts in it are damaged"):
         read_log(path)
 
 

@@ -121,7 +121,7 @@ def test_run_that_stopped_early_is_on_disk(tmp_path: Path) -> None:
     write_log(run, tmp_path / "log.h5")
     found = read_log(tmp_path / "log.h5")
     assert found.outcome is Outcome.BUDGET_EXCEEDED
-    assert "50 steps" in found.message
+    assert "max_steps = 50" in found.message
     assert found.trajectory["time"][-1] > 0
 
 

@@ -206,11 +206,14 @@ def test_run_that_has_ended_is_not_run_again(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (lambda log: {"attributes": log.attributes | {"method": "Euler"}}, "'Euler' is no integrator"),
+        (lambda log: {"attributes": log.attributes | {"method": "Euler"}}, "unknown integrator 'Euler'"),
         (lambda log: {"attributes": log.attributes | {"rtol": -1.0}}, "attribute rtol"),
         (lambda log: {"trajectory": _without(log, "elongation")}, "elongation is missing"),
-        (lambda log: {"trajectory": _cut(log, "bend_angle")}, "3 segments of 4"),
-        (lambda log: {"trajectory": log.trajectory | {"time": log.trajectory["time"][::-1]}}, "do not rise"),
+        (lambda log: {"trajectory": _cut(log, "bend_angle")}, "3 segments, not 4"),
+        (
+            lambda log: {"trajectory": log.trajectory | {"time": log.trajectory["time"][::-1]}},
+            "do not increase",
+        ),
     ],
 )
 def test_samples_that_do_not_belong_to_the_scenario_are_refused(tmp_path: Path, spoil, said: str) -> None:

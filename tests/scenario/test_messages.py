@@ -59,8 +59,12 @@ def refusal(folder: Path, text: str) -> str:
         ("hole_offset = 0.008", "hole_offset = 0.008\neffects = {}", "It is a table of its own: [effects]."),
         ("[0.0, -9.81]", "[-9.81]", "acceleration: a list of two numbers is expected; read [-9.81]."),
         ("name = ", "name = = ", "not a TOML file, line "),
-        ("duration = 1.0", "duration = 1,0", "numbers have a point and no comma; read duration = 1,0"),
-        ("[study]", "[arm]\n[study]", "a table that was begun before"),
+        (
+            "duration = 1.0",
+            "duration = 1,0",
+            "numbers have a decimal point, not a comma; read duration = 1,0",
+        ),
+        ("[study]", "[arm]\n[study]", "a table defined before"),
     ],
 )
 def test_mistake_is_told_with_what_to_write(tmp_path: Path, old: str, new: str, said: str) -> None:

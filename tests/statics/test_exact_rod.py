@@ -259,7 +259,7 @@ def test_upright_core_buckles_under_7_84_e_j_over_its_length_squared() -> None:
     """Greenhill 1881: q L^3 / E J = 7.8373, the square of 3/2 times the first zero of J_-1/3."""
     upright = Gravity((-1.0, 0.0))
     assert exact_rod(heavy_core(4, upright, weight=7.837)).tip[0] == pytest.approx(1.0, abs=1e-12)
-    with pytest.raises(RodError, match=r"ends at 78\.37% of the loads: beyond it the arm is not stable"):
+    with pytest.raises(RodError, match=r"up to 78\.37% of the loads: above, the arm is not stable"):
         exact_rod(heavy_core(4, upright, weight=10.0))
 
 
@@ -308,34 +308,32 @@ def test_unknown_effect_is_named() -> None:
     class Magnetism(Bending):
         name: ClassVar[str] = "magnetism"
 
-    with pytest.raises(InputError, match=r"does not know: magnetism\. Known: bending, cables"):
+    with pytest.raises(InputError, match=r"has no effect magnetism\. Its effects: bending, cables"):
         exact_rod(Scene(rone2012().arm, (*rone2012().effects, Magnetism())), 1.0)
 
 
 def test_rod_without_bending_is_refused() -> None:
-    with pytest.raises(InputError, match="needs the effect 'bending'"):
+    with pytest.raises(InputError, match="needs effect 'bending'"):
         exact_rod(without(rone2012(), "bending"), 1.0)
 
 
 def test_rod_ends_where_the_holes_meet() -> None:
-    with pytest.raises(
-        RodError, match=r"ends at 59\.9.% of the loads: there the holes of cable 'upper' meet"
-    ):
+    with pytest.raises(RodError, match=r"up to 59\.9.% of the loads: there, holes of cable 'upper' meet"):
         exact_rod(rone2012(), 120.0)
 
 
 def test_rod_ends_where_it_buckles() -> None:
     euler_load = (pi / 2) ** 2
-    with pytest.raises(RodError, match=r"ends at 61\.70% of the loads: beyond it the arm is not stable"):
+    with pytest.raises(RodError, match=r"up to 61\.70% of the loads: above, the arm is not stable"):
         exact_rod(weightless_core(disks=2, force=(-euler_load / 0.617, 0.0)))
 
 
 def test_rod_far_beyond_its_buckling_load_is_not_followed() -> None:
     """At 100 times E J / L^2 three directions are unstable, and the straight rod is in balance."""
-    with pytest.raises(RodError, match=r"ends at 2\.4.% of the loads"):
+    with pytest.raises(RodError, match=r"up to 2\.4.% of the loads"):
         exact_rod(weightless_core(disks=1, force=(-100.0, 0.0)))
 
 
 def test_rod_ends_where_the_core_is_crushed() -> None:
-    with pytest.raises(RodError, match="crushed"):
+    with pytest.raises(RodError, match="zero length"):
         exact_rod(rod_under_tip_force((-1.0, 0.0), area=0.6))

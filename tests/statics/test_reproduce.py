@@ -270,7 +270,7 @@ def test_unknown_paper_is_refused_with_the_nearest_one(tmp_path: Path) -> None:
 def test_command_prints_and_writes_the_papers_numbers(tmp_path: Path) -> None:
     result = runner.invoke(app, ["reproduce", "rone2012", "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
-    for words in ("-614.590", "-614.690", "-592.760", "22.2722", "At 0.1 N the laws differ in sign"):
+    for words in ("-614.590", "-614.690", "-592.760", "22.2722", "At 0.1 N the results differ in sign"):
         assert words in result.stdout
     assert max(map(len, result.stdout.splitlines())) <= 80 + len(str(tmp_path))
     with (tmp_path / "rone2012_table_2.csv").open() as file:

@@ -95,9 +95,7 @@ def test_ramp_goes_on_without_a_jump_where_a_path_branches_off_and_logs_both(tmp
     assert bent.lost_at.load_factor == pytest.approx(critical, rel=1e-6)
     assert 1.0 / float(eigh(own, stiffness, eigvals_only=True)[-1]) == pytest.approx(1.5, abs=0.01)
     assert not any(point.jumped for point in run.equilibria)
-    assert (
-        "goes on along another path between points at load factor 0.4 and at load factor 0.6" in run.message
-    )
+    assert "continues on another path between load factor 0.4 and load factor 0.6" in run.message
     assert "another path branches off at load factor 0.56" in run.message
     write_log(run, tmp_path / "buckling.h5")
     points = read_log(tmp_path / "buckling.h5").equilibria

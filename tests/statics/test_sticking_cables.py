@@ -220,4 +220,4 @@ def test_run_and_settle_measure_from_one_place_of_rest(tmp_path: Path) -> None:
     assert abs(found.along[-1] - found.travel) < run.static_gap + 1e-12
     arguments = ["settle", str(tmp_path / "log.h5"), "--out", str(tmp_path)]
     shown = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1"}).invoke(app, arguments)
-    assert "The linear mode is that of cables that stick" in shown.output
+    assert "The linear mode is for sticking cables" in shown.output

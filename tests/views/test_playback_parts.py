@@ -127,7 +127,7 @@ def test_round_arrow_turns_the_way_of_its_moment() -> None:
 def test_log_without_a_scenario_says_that_loads_are_not_drawn() -> None:
     log = replace(motion_log(loads=FORCE), scenario="")
     assert not any("loads" in entity for entity in drawn(log))
-    assert "loads are not drawn" in about(playback_from(log))
+    assert "Loads are not drawn" in about(playback_from(log))
 
 
 # ---- equilibria of the moment ----

@@ -79,7 +79,7 @@ def judge(assertions: Sequence[Assertion], figures: Mapping[str, float | None]) 
 
 def verdict_table(verdicts: Sequence[Verdict], missing: Mapping[str, str]) -> Any:
     """A table of assertions: whether each holds, and the value found."""
-    table = plain_table("\nAsked for", "assertion", "holds", "found")
+    table = plain_table("\nChecks", "assertion", "holds", "found")
     table.columns[2].justify, table.columns[2].overflow = "left", "fold"
     for assertion, value, holds in verdicts:
         unit = QUANTITIES[assertion.name].unit

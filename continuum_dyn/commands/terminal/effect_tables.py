@@ -35,7 +35,7 @@ def show_additions(scenario: "Scenario", found: "RestModes | None") -> None:
     shown.add_row("  all of them", str(len(scene.coordinates)), str(operations(scene)), *rates)
     say()
     console().print(shown)
-    say("  Operations: arithmetic that the steps of one evaluation would lose with it.")
+    say("  Operations: arithmetic of one evaluation that is saved without the effect.")
 
 
 def _measure(
@@ -60,7 +60,7 @@ def _rates(scenario: "Scenario", effect: str) -> str:
     if len(scenario.scene.coordinates) * scenario.scene.arm.segments > FEW_COORDINATES:
         return "see --measure"
     rates = rates_without(scenario, effect)
-    return "no stable rest" if rates is None else _range(rates)
+    return "not stable at rest" if rates is None else _range(rates)
 
 
 def _range(rates: tuple[float, float]) -> str:
@@ -98,7 +98,7 @@ def show_what_to_leave_out(scenario: "Scenario") -> None:
 
 def _row(effect: "LeftOut", allowed: float) -> tuple[str, ...]:
     if effect.tip_shift is None or effect.seconds is None or effect.time_ratio is None:
-        return ("no such motion",)
+        return ("no motion",)
     costs = f"{duration(effect.seconds)}, {1.0 - effect.time_ratio:.0%}" if effect.seconds > 0.0 else "none"
     below = "yes" if effect.tip_shift < allowed else "no"
     return length(effect.tip_shift), costs, f"{effect.fastest_rate:.3g} 1/s", below

@@ -64,7 +64,7 @@ def prepare_streams() -> None:
         sys.stderr = _nowhere()
     if sys.stdout is None:
         sys.stdout = _nowhere()
-        raise LogError("standard output is closed: there is nowhere to print to. Try > /dev/null, or a file.")
+        raise LogError("standard output is closed, so nothing can be printed. Try > /dev/null, or a file.")
 
 
 def drop_output() -> None:

@@ -1,7 +1,7 @@
 """Helpers of the commands: quantities in readable units, a plain table, progress, a folder."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import isfinite
 from pathlib import Path
 from shutil import get_terminal_size
@@ -44,6 +44,12 @@ def duration(value: float) -> str:
         if abs(value) >= 0.999 * size:
             return f"{value / size:.3g} {unit}"
     return f"{value / 1e-9:.3g} ns"
+
+
+def counts(counters: Mapping[str, int]) -> str:
+    """Counters of a motion with their names: "12 steps, 40 Newton iterations"."""
+    words = {name: name.replace("_", " ").replace("newton", "Newton") for name in counters}
+    return ", ".join(f"{count} {words[name]}" for name, count in counters.items())
 
 
 def bending(strain: float) -> str:

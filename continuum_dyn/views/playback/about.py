@@ -82,5 +82,5 @@ def _reading(playback: Playback) -> str:
     if playback.loads(playback.samples[:1]):
         said.append("**Arrows:** loads on disks.")
     if playback.scenario is None:
-        said.append("The log carries no scenario that could be read: loads are not drawn.")
+        said.append("Loads are not drawn: the log has no readable scenario.")
     return "\n\n".join(said)

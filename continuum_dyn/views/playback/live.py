@@ -133,7 +133,7 @@ def main() -> None:
     if viewer.poll() is None:
         recording.flush(timeout_sec=FLUSH_TIME)
     elif viewer.returncode:
-        sys.exit("the rerun viewer cannot run here; the run goes on without it.")
+        sys.exit("the rerun viewer cannot start; the run continues without it.")
 
 
 if __name__ == "__main__":

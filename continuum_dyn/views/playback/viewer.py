@@ -25,7 +25,7 @@ VIEWER = (
 QUIET = {"CI": "1", "TELEMETRY_ENABLED": "false"}
 """Environment in which rerun sends no statistics of its use: it has no other switch but one for good."""
 
-INSTEAD = "To look at it in a browser add --web; to keep a recording for another computer, --save FILE.rrd"
+INSTEAD = "To view it in a browser, add --web; to save a recording for another computer, add --save FILE.rrd"
 """Advice where no window can be opened."""
 START_TIME = 20.0
 """Longest time for a server to answer, s."""
@@ -52,8 +52,8 @@ def show(logs: Sequence[Log]) -> None:
 
 def _why_no_window(words: str, status: int) -> str:
     if any(name in words for name in ("WAYLAND_DISPLAY", "DISPLAY", "EventLoop")):
-        return "there is no display here to open the rerun viewer on."
-    return f"the rerun viewer cannot run here: {_last_line(words, status).rstrip('.')}."
+        return "no display is available for the rerun viewer."
+    return f"the rerun viewer cannot start: {_last_line(words, status).rstrip('.')}."
 
 
 def serve(logs: Sequence[Log], tell: Callable[[str], None]) -> None:
