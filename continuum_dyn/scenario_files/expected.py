@@ -13,7 +13,8 @@ def expected(detail: Any) -> str:
     """Text of what is expected where pydantic has found the error ``detail``, and what was read there."""
     wanted = _WANTED.get(detail["type"])
     words = _stated(detail) if wanted is None else wanted(detail.get("ctx", {}))
-    hint = ", without quotes and unit" if isinstance(detail["input"], str) and "number" in words else ""
+    unquoted = isinstance(detail["input"], str) and "number" in words and '"' not in words
+    hint = ", without quotes and unit" if unquoted else ""
     return f"{words} is expected{hint}; read {as_read(detail['input'])}."
 
 

@@ -173,8 +173,8 @@ def test_what_has_not_settled_says_by_how_much_and_when_it_would() -> None:
     assert longer.trajectory is not None
     assert run.static_gap is not None
     assert f"{1e3 * run.static_gap:.2g} mm from the final equilibrium" in run.message
-    assert f"moves at {run.trajectory.tip_speed[-1]:.2g} m/s" in run.message
-    assert f"below {scenario.settled_within:.2g} m" in run.message
+    assert f"moves at {1e3 * run.trajectory.tip_speed[-1]:.3g} mm/s" in run.message
+    assert f"(limit {1e3 * scenario.settled_within:.2g} mm)" in run.message
     moved, (x, y, _) = longer.trajectory, longer.equilibria[-1].tip
     away = np.hypot(moved.disk_x[:, -1] - x, moved.disk_y[:, -1] - y)
     unsettled = np.maximum(away, moved.tip_speed) >= scenario.settled_within
