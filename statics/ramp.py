@@ -9,7 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from statics.arc_length import ArcLength, Path
+from statics.arc_length import Path, follow_from
+from statics.bordered_system import BorderedSystem
 from statics.equilibria import Critical, Equilibrium, Slip, StaticSolver
 from statics.outcome import Outcome
 from statics.scene import Scene
@@ -85,19 +86,19 @@ def _way(solver: StaticSolver, inputs: np.ndarray, start: Equilibrium | None) ->
         start = solver.solve(np.concatenate([np.zeros(drives), inputs[drives:]]))
     if not start.found:
         return None
-    return ArcLength(solver, np.array([start.inputs, inputs])).follow(start)
+    return follow_from(BorderedSystem(solver, np.array([start.inputs, inputs])), start)
 
 
 def _continued(solver: StaticSolver, before: Equilibrium, point: Equilibrium) -> Equilibrium:
     """The equilibrium that continues the one before, or else ``point``, with where the path was lost."""
-    arc = ArcLength(solver, np.array([before.inputs, point.inputs]))
-    if not point.left and _on_one_smooth_path(arc, before, point):
+    system = BorderedSystem(solver, np.array([before.inputs, point.inputs]))
+    if not point.left and _on_one_smooth_path(system, before, point):
         return point
-    path = arc.follow(before, until_critical=True)
+    path = follow_from(system, before, until_critical=True)
     if path.critical or path.outcome is not Outcome.COMPLETED:
         return replace(point, lost_at=path.end, jumped=not _branches_off(solver, path, point))
     change = path.end.coordinates - point.coordinates
-    if np.sqrt(arc.inner(change, change)) < SAME:
+    if np.sqrt(system.inner(change, change)) < SAME:
         return point
     return replace(path.end, iterations=point.iterations)
 
@@ -109,20 +110,20 @@ def _branches_off(solver: StaticSolver, lost: Path, point: Equilibrium) -> bool:
     """
     if lost.end.critical is not Critical.BRANCHING:
         return False
-    arc = ArcLength(solver, np.array([point.inputs, lost.points[0].inputs]))
-    back = arc.follow(point, until_critical=True)
+    system = BorderedSystem(solver, np.array([point.inputs, lost.points[0].inputs]))
+    back = follow_from(system, point, until_critical=True)
     change = back.end.coordinates - lost.end.coordinates
-    return bool(back.critical) and bool(np.sqrt(arc.inner(change, change)) < TOUCHING)
+    return bool(back.critical) and bool(np.sqrt(system.inner(change, change)) < TOUCHING)
 
 
-def _on_one_smooth_path(arc: ArcLength, before: Equilibrium, point: Equilibrium) -> bool:
+def _on_one_smooth_path(system: BorderedSystem, before: Equilibrium, point: Equilibrium) -> bool:
     """Whether both slopes of the path are nearly that of the straight line between the two."""
     way = point.coordinates - before.coordinates
-    length = np.sqrt(arc.inner(way, way))
+    length = np.sqrt(system.inner(way, way))
     if length < SAME and not np.array_equal(before.inputs, point.inputs):
         return point.unstable_directions == before.unstable_directions
     for parameter, end in ((0.0, before), (1.0, point)):
-        off = arc.tangent_at(end.coordinates, parameter)[0] - way
-        if np.sqrt(arc.inner(off, off)) > SMOOTH * length:
+        off = system.tangent_at(end.coordinates, parameter)[0] - way
+        if np.sqrt(system.inner(off, off)) > SMOOTH * length:
             return False
     return True

@@ -63,7 +63,7 @@ def check(found: Interrupted, finished: tuple[Outcome, ...] = ()) -> None:
     ("name", "place", "call", "outcome", "told"),
     [
         ("tension_ramp", "statics.ramp:_continued", 2, "interrupted", "after 3 of 6 points"),
-        ("snap_through", "statics.arc_length:_Follower._step", 5, "interrupted", "interrupted at"),
+        ("snap_through", "statics.arc_length:_Walk._step", 5, "interrupted", "interrupted at"),
         ("step_response", "continuum_dyn.scenario_files.reading:build", 1, None, ""),
         ("step_response", "statics.equilibria:StaticSolver.solve", 2, "interrupted", "before the motion"),
         (
