@@ -105,6 +105,7 @@ def drags(dynamics: Dynamics, v: np.ndarray, omega: np.ndarray) -> tuple[np.ndar
     return force, -(spinning + alpha * arm.disk_inertia) * omega
 
 
+@pytest.mark.slow
 def test_accelerations_are_those_of_kanes_method_with_drag_on_the_disks() -> None:
     dynamics = damped(3, THICK, THIN, BY_MASS, gravity=(1.7, -9.6))
     arm = whole_arm.whole_arm(dynamics.scene)

@@ -123,6 +123,7 @@ def test_steps_of_fixed_size_have_the_stated_order(
     assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-order, abs=0.4)
 
 
+@pytest.mark.slow
 def test_tip_error_follows_the_tolerance(step_response: Scenario) -> None:
     brief = replace(step_response, study=MotionStudy(0.1, samples=101))
     reference = motion(replace(brief, solver=Solver("Radau", rtol=1e-11, atol=1e-14)))

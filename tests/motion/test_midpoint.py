@@ -141,6 +141,7 @@ def by_solve_ivp(dynamics: Dynamics, span: Interval, y: np.ndarray, step: float,
 # ---- motions ----
 
 
+@pytest.mark.slow
 def test_midpoint_rule_is_of_second_order_under_a_changing_tension() -> None:
     scene, duration = stiff(), 0.05
     drive: tuple[Profile, ...] = (Sine(1.0, 0.9, 30.0),)

@@ -114,6 +114,7 @@ def test_interrupted_while_it_is_loaded_it_ends_in_a_word(tmp_path: Path) -> Non
     assert (found.status, found.errors, found.log, found.left_over) == (130, "interrupted\n", None, [])
 
 
+@pytest.mark.slow
 def test_interrupted_motion_is_logged_up_to_there(tmp_path: Path) -> None:
     place = "continuum_dyn.record.streaming:StreamedLog.add"
     found = interrupted(long_motion(tmp_path), tmp_path / "out", place=place, call=2)

@@ -59,6 +59,7 @@ def accelerations(scene: Scene, q: np.ndarray, u: np.ndarray, inputs: np.ndarray
     return rate[q.size : 2 * q.size].reshape(q.shape)
 
 
+@pytest.mark.slow
 def test_accelerations_equal_kanes_method_with_forces_along_the_disks_axes() -> None:
     scene, tension = with_followers(full_scene(2), *FOLLOWERS), np.array([1.3, 0.4])
     for seed in range(3):
