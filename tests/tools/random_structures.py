@@ -16,6 +16,7 @@ from scenario_mutants import Tables, written
 ALIKE = 20
 """Number of scenarios of one structure."""
 STIFF, EXPLICIT = ("Radau", "BDF", "LSODA"), ("RK23", "RK45", "DOP853")
+METALS, PLASTICS = ("steel", "stainless_steel", "nitinol"), ("peek", "pla", "pa12")
 BUDGET = {"max_steps": 4000, "max_seconds": 2.0}
 
 
@@ -168,31 +169,72 @@ class _Draw:
         return found
 
     def arm(self) -> Tables:
-        found: Tables = {"disks": self.disks, "disk_spacing": self.each(lambda: self.near(0.02, 1.5))}
-        if self.chance(0.4):
+        found = {"disks": self.disks} | self.spacing()
+        has_preset = self.chance(0.4)
+        if has_preset:
             found["preset"] = "rone2012"
         else:
-            found["youngs_modulus"] = self.each(lambda: self.near(2.1e11))
-            found["core_radius"] = self.each(lambda: self.near(4e-4, 1.5))
-            found["disk_inertia"] = self.each(lambda: self.near(2e-8, 3.0))
-        found["disk_mass"] = self.each(lambda: self.near(7.8e-4, 3.0))
+            found |= self.core()
+        found |= self.round_disks() if self.chance(0.15) else self.plain_disks(has_preset)
         if self.chance(0.2):
             found["reference_curvature"] = self.each(lambda: self.within(8.0))
         if self.traits.has_subsegments:
             found["subsegments"] = self.rng.randint(2, 3)
-        if self.traits.core_has_mass:
+        if self.traits.core_has_mass and "core_material" not in found:
             found["core_density"] = self.near(7.8e3)
         return found
+
+    def spacing(self) -> Tables:
+        if self.chance(0.15):
+            return {"length": self.near(0.02 * self.disks, 1.5)}
+        return {"disk_spacing": self.each(lambda: self.near(0.02, 1.5))}
+
+    def core(self) -> Tables:
+        """A rod or, rarely, a tube; a material only where the core has mass, because it sets that too."""
+        found: Tables = {}
+        if self.traits.core_has_mass and self.chance(0.3):
+            found["core_material"] = self.rng.choice(METALS)
+        else:
+            found["youngs_modulus"] = self.each(lambda: self.near(2.1e11))
+        if self.chance(0.15):
+            found["core_outer_radius"] = self.each(lambda: self.near(6e-4, 1.3))
+            found["core_inner_radius"] = self.each(lambda: self.near(3e-4, 1.3))
+        else:
+            found["core_radius"] = self.each(lambda: self.near(4e-4, 1.5))
+        return found
+
+    def plain_disks(self, has_preset: bool) -> Tables:
+        found: Tables = {} if has_preset else {"disk_inertia": self.each(lambda: self.near(2e-8, 3.0))}
+        return found | {"disk_mass": self.each(lambda: self.near(7.8e-4, 3.0))}
+
+    def round_disks(self) -> Tables:
+        """Disks, or rings, by their measures and what they weigh."""
+        found: Tables = {"disk_radius": self.each(lambda: self.near(9.5e-3, 1.5))}
+        found["disk_thickness"] = self.each(lambda: self.near(3e-3, 1.5))
+        if self.chance(0.3):
+            found["disk_inner_radius"] = self.near(1e-3, 3.0)
+        weights: dict[str, Callable[[], Any]] = {
+            "disk_material": lambda: self.rng.choice(PLASTICS),
+            "disk_density": lambda: self.each(lambda: self.near(1.2e3, 1.5)),
+            "disk_mass": lambda: self.each(lambda: self.near(7.8e-4, 3.0)),
+        }
+        name = self.rng.choice(list(weights))
+        return found | {name: weights[name]()}
 
     def effect(self, name: str) -> Tables:
         drawn: dict[str, Callable[[], Tables]] = {
             "gravity": lambda: {"acceleration": [self.within(15.0), self.within(15.0)]},
-            "material_damping": lambda: {"retardation_time": self.near(1e-3, 5.0)},
+            "material_damping": self.material_damping,
             "mass_damping": lambda: {"mass_damping_rate": self.near(3.0, 5.0)},
             "linear_drag": lambda: {"drag_per_speed": self.near(0.01, 5.0)},
             "quadratic_drag": lambda: {"drag_per_speed_squared": self.near(0.1, 5.0)},
         }
         return drawn.get(name, dict)()
+
+    def material_damping(self) -> Tables:
+        if self.chance(0.15):
+            return {"damping_ratio": self.near(0.1, 5.0)}
+        return {"retardation_time": self.near(1e-3, 5.0)}
 
     def cable(self, number: int, traits: CableTraits) -> Tables:
         sign = self.rng.choice((1, -1))
@@ -200,6 +242,8 @@ class _Draw:
         last = self.disks
         if self.chance(0.3):
             last = found["anchor"] = self.rng.randint(1, self.disks)
+        if last > 1 and self.chance(0.15):
+            found["start"] = self.rng.randint(1, last - 1)
         if traits.holes_differ:
             found["hole_offset"] = [sign * self.near(0.007, 1.5) for _ in range(last + 1)]
         if traits.driven_by_length:
