@@ -10,6 +10,7 @@ from continuum_dyn.scenario.profiles import Constant, Piecewise, Profile, lower_
 from continuum_dyn.scenario.rates import Rate, check_smooth
 from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import MotionStudy, Study
+from statics.arm import Cable
 from statics.effects import Effect
 from statics.errors import InputError
 from statics.scene import Scene
@@ -22,6 +23,16 @@ def dissipated_by(scene: Scene) -> list[str]:
 
 def _dissipates(scene: Scene, effect: Effect) -> bool:
     return effect.account == "dissipated_power" and any(map(np.any, effect.columns(scene.arm).values()))
+
+
+def check_pull(cable: Cable, drive: Profile | tuple[float, ...]) -> None:
+    """Raise ``InputError`` for a profile of a cable's tension that falls below zero."""
+    if isinstance(drive, tuple) or cable.driven_by_length or (least := lower_bound(drive)) >= 0:
+        return
+    raise InputError(
+        f"cable '{cable.name}': a cable cannot push, and its tension falls to {least:g} N. "
+        "Allowed: 0 or more."
+    )
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,13 +71,8 @@ class Scenario:
             )
         if self.scene.arm.base_moves or self.base_motion:
             self._check_base()
-        for cable, profile in zip(self.scene.arm.cables, self.drives, strict=False):
-            name, pulled = cable.name, not cable.driven_by_length
-            if pulled and not isinstance(profile, tuple) and (least := lower_bound(profile)) < 0:
-                raise InputError(
-                    f"cable '{name}': a cable cannot push, and its tension falls to {least:g} N. "
-                    "Allowed: 0 or more."
-                )
+        for cable, drive in zip(self.scene.arm.cables, self.drives, strict=False):
+            check_pull(cable, drive)
         if self.chooses_mesh and self.accuracy is None:
             raise InputError('subsegments = "auto" needs an accuracy. Add [accuracy] tip, in m.')
         if self.accuracy is not None and not self.chooses_mesh and self.study.motion is None:

@@ -1,6 +1,5 @@
 """Builds the scenario from the checked tables of its file."""
 
-from dataclasses import replace
 from typing import Any
 
 from continuum_dyn.effects import MaterialDamping
@@ -11,6 +10,7 @@ from continuum_dyn.scenario_files.arm_numbers import Numbers, arm_numbers
 from continuum_dyn.scenario_files.csv_table import Tables
 from continuum_dyn.scenario_files.self_contained import self_contained
 from continuum_dyn.scenario_files.tables import (
+    ArmTable,
     BaseTable,
     CableTable,
     LoadTable,
@@ -18,7 +18,7 @@ from continuum_dyn.scenario_files.tables import (
     ScenarioFile,
     TableFile,
 )
-from statics.arm import Arm, Base, Cable, PerDisk
+from statics.arm import Arm, Base, Cable, Payload, PerDisk
 from statics.effects import CableFriction, Cables, DiskLoad, DiskLoads
 from statics.errors import InputError
 from statics.scene import Scene
@@ -35,21 +35,19 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     if any(cable.friction > 0 for cable in file.cables):
         effects.append(CableFriction())
     if file.loads:
-        effects.append(DiskLoads(loads=tuple(map(_load, file.loads))))
-    drives = tuple(_ramp_or_profile(*_drive(cable), tables, is_ramp) for cable in file.cables)
-    factors = tuple(
-        _ramp_or_profile(load.factor, "factor", tables, is_ramp, "loads")
-        for load in file.loads
-        if load.factor is not None
-    )
+        effects.append(DiskLoads(loads=tuple(map(build_load, file.loads))))
+    drives = tuple(build_drive(cable, tables, is_ramp) for cable in file.cables)
+    factors = tuple(build_factor(load, tables, is_ramp) for load in file.loads if load.factor is not None)
     if is_ramp:
         repeated = _repeat_single((*drives, *factors))
         drives, factors = repeated[: len(drives)], repeated[len(drives) :]
-    motion = _base_motion(file.base, tables) if file.base is not None else ()
+    motion = build_base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
     numbers = arm_numbers(file.arm)
-    scene = Scene(replace(_arm(file, numbers), base=base), effects)
+    cables = tuple(build_cable(cable, number) for number, cable in enumerate(file.cables, start=1))
+    arm = build_arm(file.arm, numbers, cables, tuple(file.payloads), base)
+    scene = Scene(arm, effects)
     if damping is not None:
         scene = _damped(scene, damping)
     return Scenario(
@@ -69,28 +67,45 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
 
 def _damped(scene: Scene, damping: MaterialDampingTable) -> Scene:
     """The scene with its core's damping, whose retardation time is given or follows from a damping ratio."""
+    check_damping(damping)
     time, ratio = damping.retardation_time, damping.damping_ratio
-    if time is not None and ratio is None:
-        return Scene(scene.arm, (*scene.effects, MaterialDamping(time)))
-    if ratio is None or time is not None:
-        raise InputError(
-            "[effects] material_damping: give retardation_time (s) or damping_ratio, and not both."
-        )
+    if ratio is None:
+        return Scene(scene.arm, (*scene.effects, MaterialDamping(time or 0.0)))
     try:
         return Scene(scene.arm, (*scene.effects, MaterialDamping(retardation_time(scene, ratio))))
     except InputError as error:
         raise InputError(f"[effects] material_damping: {error}") from error
 
 
-def _arm(file: ScenarioFile, numbers: Numbers) -> Arm:
+def check_damping(damping: MaterialDampingTable) -> None:
+    """Raise ``InputError`` unless the damping is given by one number."""
+    if (damping.retardation_time is None) == (damping.damping_ratio is None):
+        raise InputError(
+            "[effects] material_damping: give retardation_time (s) or damping_ratio, and not both."
+        )
+
+
+def build_arm(
+    table: ArmTable,
+    numbers: Numbers,
+    cables: tuple[Cable, ...] = (),
+    payloads: tuple[Payload, ...] = (),
+    base: Base | None = None,
+) -> Arm:
+    """The arm of a table [arm] and of the numbers that it leads to. Raises ``InputError`` like ``Arm``."""
     numbers = dict(numbers)
-    cables = tuple(_cable(cable, f"cable_{number}") for number, cable in enumerate(file.cables, start=1))
     lists = {name: values for name, values in numbers.items() if isinstance(values, tuple)}
     if isinstance(numbers["disk_spacing"], tuple):
         numbers["disk_spacing"] = sum(lists["disk_spacing"]) / len(lists["disk_spacing"])
     single = {name: value for name, value in numbers.items() if not isinstance(value, tuple)}
-    subsegments, payloads = _subsegments(file.arm.subsegments), tuple(file.payloads)
-    return Arm(**single, subsegments=subsegments, each=PerDisk(**lists), cables=cables, payloads=payloads)
+    return Arm(
+        **single,
+        subsegments=_subsegments(table.subsegments),
+        each=PerDisk(**lists),
+        cables=cables,
+        payloads=payloads,
+        base=base,
+    )
 
 
 def _subsegments(given: int | str | None) -> int:
@@ -98,10 +113,11 @@ def _subsegments(given: int | str | None) -> int:
     return given if isinstance(given, int) else 1
 
 
-def _cable(cable: CableTable, numbered: str) -> Cable:
+def build_cable(cable: CableTable, number: int) -> Cable:
+    """The cable of a table; its number from 1 on names it if the table does not."""
     slip = {} if cable.slip_speed is None else {"slip_speed": cable.slip_speed}
     return Cable(
-        cable.name or numbered,
+        cable.name or f"cable_{number}",
         cable.hole_offset,
         cable.anchor,
         cable_stiffness=cable.cable_stiffness,
@@ -111,8 +127,18 @@ def _cable(cable: CableTable, numbered: str) -> Cable:
     )
 
 
-def _drive(cable: CableTable) -> tuple[Any, str]:
-    """The input of a cable, and its name: tension or cable_displacement."""
+def build_drive(cable: CableTable, tables: Tables, is_ramp: bool) -> Any:
+    """A profile of a cable's input, or a list for a ramp. Raises ``InputError`` if they do not fit."""
+    return _ramp_or_profile(*given_drive(cable), tables, is_ramp)
+
+
+def build_factor(load: LoadTable, tables: Tables, is_ramp: bool) -> Any:
+    """A profile of a driven load's factor, or a list for a ramp. Raises ``InputError`` like a cable's."""
+    return _ramp_or_profile(load.factor, "factor", tables, is_ramp, "loads")
+
+
+def given_drive(cable: CableTable) -> tuple[Any, str]:
+    """The input of a cable, and its name: tension or cable_displacement. Raises ``InputError`` unless one."""
     given = {"tension": cable.tension, "cable_displacement": cable.cable_displacement}
     known = [name for name, value in given.items() if value is not None]
     where = "[[cables]]" if cable.name is None else f"[[cables]] '{cable.name}'"
@@ -153,11 +179,13 @@ def _profile(given: Any, tables: Tables, quantity: str) -> Profile:
     return tables.profile(given.file, quantity, given.periods) if isinstance(given, TableFile) else given
 
 
-def _base_motion(base: BaseTable, tables: Tables) -> tuple[Profile, ...]:
+def build_base_motion(base: BaseTable, tables: Tables) -> tuple[Profile, ...]:
+    """Profiles of the base's x, y and angle. Raises ``InputError`` for a CSV file that is wrong."""
     return tuple(_profile(getattr(base, name), tables, name) for name in BaseTable.model_fields)
 
 
-def _load(load: LoadTable) -> DiskLoad:
+def build_load(load: LoadTable) -> DiskLoad:
+    """The load of a table."""
     driven = load.factor is not None
     return DiskLoad(load.disk, load.force, load.moment, driven=driven, follower=load.follower)
 

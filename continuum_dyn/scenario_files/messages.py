@@ -8,7 +8,7 @@ from dataclasses import MISSING
 from dataclasses import fields as dataclass_fields
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, get_args, get_origin
+from typing import Any, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -19,6 +19,7 @@ from continuum_dyn.scenario_files.expected import as_read, expected
 from continuum_dyn.scenario_files.synonyms import meant_by
 from continuum_dyn.scenario_files.tables import (
     OF_EFFECTS,
+    REFUSED,
     UNKNOWN_PROFILE,
     ArmTable,
     BaseTable,
@@ -71,18 +72,44 @@ _KEYS: dict[str, Any] = {
 }
 
 
-def explain(path: Path, mistakes: Sequence[str]) -> str:
-    """The text of an error: at most ``MAX_SHOWN`` mistakes of the file, and how many more there are."""
-    lines = [f"{path} {mistake}" for mistake in mistakes[:MAX_SHOWN]]
-    if len(mistakes) > MAX_SHOWN:
-        lines.append(f"and {len(mistakes) - MAX_SHOWN} more.")
-    return "\n".join(lines)
+class Mistake(NamedTuple):
+    """Place of a mistake in the file, such as ("cables", "0", "anchor"), and the message about it.
+
+    ``mark`` stands between the file's name and a message that does not begin with its place.
+    """
+
+    place: tuple[str, ...]
+    message: str
+    mark: str = ""
 
 
-def mistakes_of(error: ValidationError) -> list[str]:
+def explain(path: Path, mistakes: Iterable[Mistake], content: Iterable[str]) -> str:
+    """The text of an error: at most ``MAX_SHOWN`` mistakes of the file, and how many more there are.
+
+    They are in the order of the file, whose ``content`` has its tables by name.
+    """
+    tables = list(content)
+
+    def position(mistake: Mistake) -> tuple[int, int]:
+        head, number = (*mistake.place[:2], "", "")[:2]
+        return (
+            tables.index(head) if head in tables else len(tables),
+            int(number) if number.isdigit() else 0,
+        )
+
+    ordered = sorted(mistakes, key=position)
+    lines = list(dict.fromkeys(f"{path}{mistake.mark} {mistake.message}" for mistake in ordered))
+    more = [f"and {len(lines) - MAX_SHOWN} more."] if len(lines) > MAX_SHOWN else []
+    return "\n".join(lines[:MAX_SHOWN] + more)
+
+
+def mistakes_of(error: ValidationError) -> list[Mistake]:
     """Each mistake that the check of a file's tables has found; known keys are listed once for each table."""
     listed: set[str] = set()
-    return [_one(detail, listed) for detail in error.errors(include_url=False)]
+    return [
+        Mistake(tuple(map(str, detail["loc"])), _one(detail, listed))
+        for detail in error.errors(include_url=False)
+    ]
 
 
 def _one(detail: Any, listed: set[str]) -> str:
@@ -102,6 +129,9 @@ def _one(detail: Any, listed: set[str]) -> str:
     if kind == "string_pattern_mismatch":
         known = _nearest(str(given), "profiles", PROFILES)
         return f"{where(place[:-1])}: unknown profile {_short(repr(given))}.{known}"
+    if kind == REFUSED:
+        message = detail["ctx"]["message"]
+        return message if message.startswith("[") else f"{where(place)}: {message}"
     if kind == "literal_error" and inside == "solver":
         return f"{where(place)}: unknown {key} {as_read(given)}.{did_you_mean(str(given), METHODS)}"
     return f"{where(place)}: {expected(detail)}{_advice(place, given) if kind in TABLE_ERRORS else ''}"

@@ -18,8 +18,9 @@ from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import FIXED_STEP
 from continuum_dyn.scenario_files.building import build
 from continuum_dyn.scenario_files.csv_table import Tables, table_text
-from continuum_dyn.scenario_files.messages import explain, mistakes_of, where
+from continuum_dyn.scenario_files.messages import Mistake, explain, mistakes_of, where
 from continuum_dyn.scenario_files.overrides import apply_overrides
+from continuum_dyn.scenario_files.part_mistakes import mistakes_of_parts
 from continuum_dyn.scenario_files.tables import ScenarioFile
 from continuum_dyn.scenario_files.text import read_text
 from continuum_dyn.scenario_files.toml_text import read_toml, toml_mistake
@@ -61,16 +62,19 @@ def parse(
         content = read_toml(text)
         mistakes = [*_unphysical_numbers(content, []), *_crossed_tolerances(content)]
         file = _checked(content, mistakes)
-        if mistakes or file is None:
-            raise InputError(explain(path, mistakes))
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: {toml_mistake(text, error)}") from error
     except RecursionError as error:
         raise InputError(f"{path}: nested too deeply to be a scenario.") from error
-    try:
-        return build(file, plain_line(path.stem), text, Tables(text_of_table)), file.expect
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+    tables = Tables(text_of_table)
+    if file is not None and not mistakes:
+        try:
+            return build(file, plain_line(path.stem), text, tables), file.expect
+        except InputError as error:
+            mistakes = mistakes_of_parts(content, [], text, tables) or [Mistake((), str(error), ":")]
+    else:
+        mistakes += mistakes_of_parts(content, mistakes, text, tables)
+    raise InputError(explain(path, mistakes, content))
 
 
 def _changed(text: str, path: Path, overrides: Sequence[str]) -> str:
@@ -80,18 +84,16 @@ def _changed(text: str, path: Path, overrides: Sequence[str]) -> str:
         raise InputError(f"{path}: {error}") from error
 
 
-def _checked(content: dict[str, Any], mistakes: list[str]) -> ScenarioFile | None:
+def _checked(content: dict[str, Any], mistakes: list[Mistake]) -> ScenarioFile | None:
     """The tables of a file, or None after adding what is wrong with them to the mistakes."""
     try:
         return ScenarioFile.model_validate_json(json.dumps(_physical(content), default=str))
     except ValidationError as error:
         mistakes += mistakes_of(error)
-    except InputError as error:
-        mistakes.append(str(error))
     return None
 
 
-def _unphysical_numbers(content: Any, place: list[str]) -> Iterator[str]:
+def _unphysical_numbers(content: Any, place: list[str]) -> Iterator[Mistake]:
     """Mistakes of numbers of no physical arm, whose products would be beyond floating point."""
     if isinstance(content, dict):
         for key, value in content.items():
@@ -100,9 +102,10 @@ def _unphysical_numbers(content: Any, place: list[str]) -> Iterator[str]:
         for number, value in enumerate(content):
             yield from _unphysical_numbers(value, [*place, str(number)])
     elif not _is_physical(content):
-        yield (
+        yield Mistake(
+            tuple(place),
             f"{where(place)[:60]}: too {'large' if abs(content) > 1 else 'small'} a number to compute with. "
-            f"Allowed: 0, and sizes from {SMALLEST:g} to {LARGEST:g}, in SI units."
+            f"Allowed: 0, and sizes from {SMALLEST:g} to {LARGEST:g}, in SI units.",
         )
 
 
@@ -123,18 +126,20 @@ def _is_physical(value: Any) -> bool:
     return size == 0 or SMALLEST <= size <= LARGEST or not size < inf
 
 
-def _crossed_tolerances(content: dict[str, Any]) -> Iterator[str]:
+def _crossed_tolerances(content: dict[str, Any]) -> Iterator[Mistake]:
     """Mistakes of tolerances beside what decides them."""
     settings = content.get("solver")
     if not isinstance(settings, dict):
         return
     given = [name for name in ("rtol", "atol") if name in settings]
     if given and settings.get("method") in FIXED_STEP:
-        yield (
-            f'[solver] {" and ".join(given)} beside method = "midpoint": its steps are equal. Give step (s).'
+        yield Mistake(
+            ("solver",),
+            f'[solver] {" and ".join(given)} beside method = "midpoint": its steps are equal. Give step (s).',
         )
     if given and "accuracy" in content:
-        yield (
+        yield Mistake(
+            ("solver",),
             f"[solver] {' and '.join(given)} beside [accuracy]: the accuracy decides the tolerances. "
-            "Give one or the other."
+            "Give one or the other.",
         )

@@ -2,7 +2,19 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag, WithJsonSchema, create_model
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidatorFunctionWrapHandler,
+    WithJsonSchema,
+    WrapValidator,
+    create_model,
+)
+from pydantic_core import PydanticCustomError
 
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.expect import Expect
@@ -11,8 +23,23 @@ from continuum_dyn.scenario.solver import Accuracy, Solver
 from continuum_dyn.scenario.studies import EquilibriumStudy, MotionStudy, RampStudy, StepResponseStudy
 from continuum_dyn.scenario_files.csv_table import MAX_ROWS
 from statics.arm import MAX_SEGMENTS, PRESETS, DiskNumber, MassList, Payload, PositiveList
+from statics.errors import InputError
 from statics.materials import MATERIALS
 from statics.support.checked import STRICT, Line, NonNegative, Positive, Vector
+
+REFUSED = "refused"
+"""Type of pydantic's errors that stand for an ``InputError``."""
+
+
+def _collect(value: Any, check: ValidatorFunctionWrapHandler) -> Any:
+    try:
+        return check(value)
+    except InputError as error:
+        raise PydanticCustomError(REFUSED, "{message}", {"message": str(error)}) from error
+
+
+Collected = WrapValidator(_collect)
+"""Makes an ``InputError``, which would end the check of a file, one of the errors that it collects."""
 
 
 class TableFile(BaseModel):
@@ -57,14 +84,17 @@ Tension = Annotated[
     | Annotated[list[NonNegative], Field(min_length=1), Tag("list")]
     | ProfileTable,
     Discriminator(_drive_kind),
+    Collected,
 ]
 AnyDrive = Annotated[
     Annotated[float, Tag("number")] | Annotated[list[float], Field(min_length=1), Tag("list")] | ProfileTable,
     Discriminator(_drive_kind),
+    Collected,
 ]
 NumberOrProfile = Annotated[
     Annotated[float, Tag("number")] | Annotated[float, Tag("list")] | ProfileTable,
     Discriminator(_drive_kind),
+    Collected,
 ]
 """A list is refused with the message for a wrong number."""
 
@@ -232,6 +262,21 @@ class ScenarioFile(BaseModel):
     loads: list[LoadTable] = []
     payloads: list[Payload] = []
     study: StudyTable
-    solver: Solver = Solver()
+    solver: Annotated[Solver, Collected] = Solver()
     accuracy: Accuracy | None = None
     expect: Expect | None = None
+
+
+class SoundTables(BaseModel):
+    """The tables of a file that are free of mistakes; in lists None stands for the others."""
+
+    model_config = ConfigDict(STRICT, extra="ignore", defer_build=True)
+    arm: ArmTable | None = None
+    base: BaseTable | None = None
+    effects: EffectsTable | None = None  # pyright: ignore[reportInvalidTypeForm]
+    cables: list[CableTable | None] = []
+    loads: list[LoadTable | None] = []
+    payloads: list[Payload | None] = []
+    study: StudyTable | None = None
+    solver: Annotated[Solver, Collected] = Solver()
+    accuracy: Accuracy | None = None

@@ -82,6 +82,109 @@ def test_mistakes_of_every_kind_are_told_together(tmp_path: Path) -> None:
         assert said in told
 
 
+IN_EACH_PART = """
+[solver]
+mehtod = "chain"
+
+[arm]
+preset = "rone2012"
+
+[effects]
+bending = {}
+material_damping = {}
+
+[[cables]]
+name = "far"
+hole_offset = 0.008
+tension = 1.0
+anchor = 9
+
+[[cables]]
+name = "undriven"
+hole_offset = 0.008
+
+[[cables]]
+name = "late"
+hole_offset = 0.008
+tension = { profile = "ramp", before = 0.0, after = 1.0, start = 1.0, end = 0.5 }
+
+[[loads]]
+disk = 7
+
+[[payloads]]
+disk = 8
+mass = 1e-3
+
+[study]
+kind = "motion"
+duration = -1.0
+"""
+
+
+def test_mistakes_of_all_parts_are_listed_in_the_order_of_the_file(tmp_path: Path) -> None:
+    said = (
+        " [solver]: unknown key 'mehtod'",
+        ": [effects] material_damping: give retardation_time (s) or damping_ratio",
+        ": cable 'far': anchor 9 is beyond the arm. Allowed: disks 1 to 4.",
+        ": [[cables]] 'undriven': missing what drives it.",
+        " [[cables]] number 3 tension: a ramp must end after it starts; start is 1 s, end 0.5 s",
+        ": load on disk 7: beyond the arm. Allowed: disks 1 to 4.",
+        ": payload on disk 8: beyond the arm. Allowed: disks 1 to 4.",
+        " [study] duration: a number greater than 0 is expected",
+    )
+    lines = refusal(tmp_path, IN_EACH_PART).splitlines()
+    assert len(lines) == len(said)
+    for line, start in zip(lines, said, strict=True):
+        assert line.startswith(f"{tmp_path / 'scenario.toml'}{start}")
+
+
+def test_parts_that_depend_on_a_wrong_arm_are_not_listed(tmp_path: Path) -> None:
+    arm = 'preset = "rone2012"\ncore_radius = 4e-4\narea = 5e-7'
+    told = refusal(tmp_path, IN_EACH_PART.replace('preset = "rone2012"', arm))
+    assert "[arm] core_radius already sets area" in told
+    assert "beyond the arm" not in told
+    assert len(told.splitlines()) == 6
+
+
+def test_study_accuracy_and_solver_are_checked_beside_a_wrong_cable(tmp_path: Path) -> None:
+    text = GOOD.replace("inertia = {}", "").replace("rotary_", "").replace("[study]", "anchor = 9\n[study]")
+    text += '\n[accuracy]\ntip = 1e-6\n\n[solver]\nmethod = "midpoint"\n'
+    told = refusal(tmp_path, text)
+    assert len(told.splitlines()) == 4
+    for said in ("anchor 9", "needs inertia", "damped by: material_damping", "chooses tolerances"):
+        assert said in told
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (
+            "[study]",
+            "anchor = 9\n[study]",
+            ": cable 'upper': anchor 9 is beyond the arm. Allowed: disks 1 to 4.",
+        ),
+        (
+            '"rone2012"',
+            '"rone2012"\ncore_radius = 4e-4\narea = 5e-7',
+            ": [arm] core_radius already sets area. Give one or the other.",
+        ),
+        (
+            "\ninertia = {}",
+            "",
+            ': a "step_response" study needs inertia. Add inertia = {} to [effects].',
+        ),
+        (
+            "[study]",
+            "[solver]\nstep = 1e-3\n[study]",
+            ' [solver] step belongs to method = "midpoint"; "auto" chooses its steps by rtol and atol. Give '
+            "those, or that method.",
+        ),
+    ],
+)
+def test_single_mistake_is_one_line(tmp_path: Path, old: str, new: str, said: str) -> None:
+    assert refusal(tmp_path, GOOD.replace(old, new, 1)) == f"{tmp_path / 'scenario.toml'}{said}"
+
+
 def test_known_keys_of_a_table_are_listed_once(tmp_path: Path) -> None:
     told = refusal(tmp_path, GOOD.replace('preset = "rone2012"', "a1 = 1\nb2 = 1\nc3 = 1"))
     assert told.count("unknown key") == 3
