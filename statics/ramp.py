@@ -120,7 +120,7 @@ def _on_one_smooth_path(system: BorderedSystem, before: Equilibrium, point: Equi
     """Whether both slopes of the path are nearly that of the straight line between the two."""
     way = point.coordinates - before.coordinates
     length = np.sqrt(system.inner(way, way))
-    if length < SAME and not np.array_equal(before.inputs, point.inputs):
+    if length < SAME:
         return point.unstable_directions == before.unstable_directions
     for parameter, end in ((0.0, before), (1.0, point)):
         off = system.tangent_at(end.coordinates, parameter)[0] - way

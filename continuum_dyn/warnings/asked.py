@@ -29,7 +29,7 @@ def unused_numbers(scenario: Scenario) -> Iterator[str]:
         of_core = name == "area" and arm.core_density is not None
         each = getattr(arm.each, name, None)
         is_zero = not np.any(getattr(arm, name) if each is None else each)
-        if arm.knows(name) and not is_zero and not (preset or of_core or any(map(scene.has, effects))):
+        if arm.has(name) and not is_zero and not (preset or of_core or any(map(scene.has, effects))):
             would = " or ".join(filter(None, (", ".join(effects[:-1]), effects[-1])))
             yield f"[arm] {name} has no effect: only {would} use it. Add one to [effects], or leave it out."
 

@@ -79,7 +79,7 @@ def check(found: Interrupted, finished: tuple[Outcome, ...] = ()) -> None:
             "continuum_dyn.simulation.in_motion:_find_static_path",
             1,
             "interrupted",
-            "after the motion, 0 points",
+            "after the motion, with 0 of",
         ),
         ("step_response", "continuum_dyn.record.streaming:StreamedLog.finish", 1, "settled", ""),
         ("step_response", "continuum_dyn.views.playback.recording:record_logs", 1, "settled", ""),

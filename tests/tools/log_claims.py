@@ -80,10 +80,10 @@ def check_rest(log: Log, scenario: Scenario) -> None:
         q = np.stack(
             [columns[name][point] for name in ("bend_angle", "elongation")[: dynamics.dofs]], axis=-1
         )
-        span, y = still(_inputs(log, scenario, point)), dynamics.state(q)
+        interval, y = still(_inputs(log, scenario, point)), dynamics.state(q)
         size = dynamics.size
-        push = dynamics.rate(0.0, y, span)[size : 2 * size]
-        change = np.linalg.solve(linearized(dynamics, y, span)[size : 2 * size, :size], push)
+        push = dynamics.rate(0.0, y, interval)[size : 2 * size]
+        change = np.linalg.solve(linearized(dynamics, y, interval)[size : 2 * size, :size], push)
         off = float(np.abs(change.reshape(lengths.shape) / lengths).max())
         assert off < OFF_BALANCE, f"equilibrium {point} is {off:.2g} off that of the equations of motion"
 
