@@ -31,7 +31,7 @@ from continuum_dyn.scenario_files.tables import (
     ScenarioFile,
     SoundTables,
 )
-from statics.arm import Arm, Payload
+from statics.arm import Arm, Cable, Payload
 from statics.effects import DiskLoads
 from statics.errors import InputError
 from statics.scene import Scene
@@ -68,6 +68,7 @@ class _Parts:
         self.file, self.tables, self.wrong = file, tables, wrong
         self.found: list[Mistake] = []
         self.cables: list[CableTable] = []
+        self.on_arm: list[Cable] = []
         self.loads: list[LoadTable] = []
         self.payloads: list[Payload] = []
         self.is_ramp = None if file.study is None else file.study.takes_lists
@@ -80,6 +81,8 @@ class _Parts:
         for number, cable in enumerate(self.file.cables):
             if cable is not None and self._cable(number, cable, arm):
                 self.cables.append(cable.model_copy(update={"name": cable.name or f"cable_{number + 1}"}))
+        if arm is not None:
+            self._attempt("cables", lambda: replace(arm, cables=tuple(self.on_arm)))
         for number, load in enumerate(self.file.loads):
             if load is not None and self._load(number, load, arm):
                 self.loads.append(load)
@@ -116,8 +119,8 @@ class _Parts:
                 check_pull(cable, build_drive(table, self.tables, self.is_ramp))
 
         self._attempt("cables", check_drive, number=number)
-        if arm is not None:
-            self._attempt("cables", lambda: replace(arm, cables=(cable,)), number=number)
+        if arm is not None and self._attempt("cables", lambda: replace(arm, cables=(cable,)), number=number):
+            self.on_arm.append(cable)
         return len(self.found) == before
 
     def _load(self, number: int, table: LoadTable, arm: Arm | None) -> bool:

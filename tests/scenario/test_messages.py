@@ -169,6 +169,11 @@ def test_study_accuracy_and_solver_are_checked_beside_a_wrong_cable(tmp_path: Pa
             ": [arm] core_radius already sets area. Give one or the other.",
         ),
         (
+            "[study]",
+            '[[cables]]\nname = "upper"\nhole_offset = -0.008\ntension = 1.0\n[study]',
+            ": 2 cables are named 'upper'. Give each its own name.",
+        ),
+        (
             "\ninertia = {}",
             "",
             ': a "step_response" study needs inertia. Add inertia = {} to [effects].',
