@@ -92,10 +92,7 @@ def explain(path: Path, mistakes: Iterable[Mistake], content: Iterable[str]) -> 
 
     def position(mistake: Mistake) -> tuple[int, int]:
         head, number = (*mistake.place[:2], "", "")[:2]
-        return (
-            tables.index(head) if head in tables else len(tables),
-            int(number) if number.isdigit() else 0,
-        )
+        return tables.index(head) if head in tables else len(tables), _index(number) or 0
 
     ordered = sorted(mistakes, key=position)
     lines = list(dict.fromkeys(f"{path}{mistake.mark} {mistake.message}" for mistake in ordered))
@@ -211,8 +208,14 @@ def where(place: Sequence[str]) -> str:
     if not place:
         return "(top level)"
     head, *rest = place
-    words = [f"number {int(part) + 1}" if part.isdigit() else part for part in rest if part not in TAGS]
+    numbered = ((part, _index(part)) for part in rest if part not in TAGS)
+    words = [part if index is None else f"number {index + 1}" for part, index in numbered]
     return " ".join([_header(head) if head in LISTS and rest else f"[{head}]", *words])
+
+
+def _index(part: str) -> int | None:
+    """The index in a list that a part of a place is; None for a key, which may have digits of any script."""
+    return int(part) if part.isascii() and part.isdigit() and len(part) < 10 else None
 
 
 def _section(place: list[str]) -> str:

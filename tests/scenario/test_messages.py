@@ -57,6 +57,7 @@ def refusal(folder: Path, text: str) -> str:
         ('"step", before', '"linear", before', "Write 'ramp'. Known: constant,"),
         ("before = 0.0", "from = 0.0", "unknown key 'from'. Write before."),
         ("hole_offset = 0.008", "hole_offset = 0.008\neffects = {}", "It is a table of its own: [effects]."),
+        ("[study]", '[solver]\n"\u00b2" = 1e99\n[study]', "[solver] \u00b2: too large a number"),
         ("[0.0, -9.81]", "[-9.81]", "acceleration: a list of two numbers is expected; read [-9.81]."),
         ("name = ", "name = = ", "not a TOML file, line "),
         (
