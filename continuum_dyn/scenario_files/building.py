@@ -48,8 +48,7 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     motion = _base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
-    numbers = arm_numbers(file.arm)
-    scene = Scene(replace(_arm(file, numbers), base=base), effects)
+    scene = Scene(replace(_arm(file, arm_numbers(file.arm)), base=base), effects)
     if damping is not None:
         scene = _damped(scene, damping)
     return Scenario(
@@ -62,7 +61,7 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
         base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or name,
-        text=self_contained(text, numbers, scene),
+        text=self_contained(text, scene),
         tables=tables.texts,
     )
 
