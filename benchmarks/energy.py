@@ -37,10 +37,10 @@ def undamped(extension: bool) -> Scene:
     return Scene(scene.arm, (effect for effect in scene.effects if effect.name not in left_out))
 
 
-def first_period(dynamics: Dynamics, span: Interval, y: np.ndarray) -> float:
+def first_period(dynamics: Dynamics, interval: Interval, y: np.ndarray) -> float:
     """Longest period (s) of the motion linearized at a state at rest."""
     size = dynamics.size
-    stiffness = -dynamics.jacobian(span.start, y, span)[size : 2 * size, :size]
+    stiffness = -dynamics.jacobian(interval.start, y, interval)[size : 2 * size, :size]
     return float(2.0 * np.pi / np.sqrt(np.linalg.eigvals(stiffness).real.min()))
 
 

@@ -30,16 +30,16 @@ WITHIN = 1e-3
 """Relative error allowed to the iteration for the largest eigenvalue."""
 
 
-def rates(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[float, float]:
+def rates(dynamics: Dynamics, y: np.ndarray, interval: Interval) -> tuple[float, float]:
     """Smallest and largest absolute eigenvalue (1/s) of the motion linearized at ``y``."""
     size = 2 * dynamics.size
-    found = np.abs(np.linalg.eigvals(linearized(dynamics, y, span)[:size, :size]))
+    found = np.abs(np.linalg.eigvals(linearized(dynamics, y, interval)[:size, :size]))
     return float(found.min()), float(found.max())
 
 
-def linearized(dynamics: Dynamics, y: np.ndarray, span: Interval) -> np.ndarray:
+def linearized(dynamics: Dynamics, y: np.ndarray, interval: Interval) -> np.ndarray:
     """d(rate)/dy. Raises ``InputError`` if it is beyond floating point."""
-    matrix = dynamics.jacobian(span.start, y, span)
+    matrix = dynamics.jacobian(interval.start, y, interval)
     if not np.isfinite(matrix).all():
         raise InputError(
             "the equations of motion overflow at the start: numbers of the scene are too far apart. "
@@ -48,11 +48,11 @@ def linearized(dynamics: Dynamics, y: np.ndarray, span: Interval) -> np.ndarray:
     return matrix
 
 
-def fastest_frequency(dynamics: Dynamics, span: Interval, y: np.ndarray) -> float:
+def fastest_frequency(dynamics: Dynamics, interval: Interval, y: np.ndarray) -> float:
     """Largest natural frequency (rad/s) of the undamped motion linearized at a state at rest."""
     size = dynamics.size
     if size <= MOST_DENSE:
-        stiffness = linearized(dynamics, y, span)[size : 2 * size, :size]
+        stiffness = linearized(dynamics, y, interval)[size : 2 * size, :size]
         return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
     from scipy.sparse.linalg import LinearOperator, eigs  # slow to load, and only large arms need it
 
@@ -62,7 +62,7 @@ def fastest_frequency(dynamics: Dynamics, span: Interval, y: np.ndarray) -> floa
         """Change of the accelerations, in units of ``scale``, by a change of coordinates in the same."""
         shift = np.zeros_like(y)
         shift[:size] = scale * change.ravel() / np.abs(change).max()
-        ahead, behind = (dynamics.rate(span.start, y + sign * shift, span) for sign in (1, -1))
+        ahead, behind = (dynamics.rate(interval.start, y + sign * shift, interval) for sign in (1, -1))
         return (ahead - behind)[size : 2 * size] / (2 * scale) * np.abs(change).max()
 
     operator = LinearOperator((size, size), matvec=accelerations, dtype=float)
@@ -179,16 +179,16 @@ class _Motion(NamedTuple):
     coordinates: np.ndarray
 
 
-def modes(dynamics: Dynamics, y: np.ndarray, span: Interval) -> tuple[Mode, ...]:
+def modes(dynamics: Dynamics, y: np.ndarray, interval: Interval) -> tuple[Mode, ...]:
     """All modes of the motion linearized at an equilibrium ``y``, lowest frequency first.
 
     Raises ``InputError`` if rounding of the fastest motion hides the slowest.
     """
     size, scales = dynamics.size, dynamics.scales()[: dynamics.size]
-    jacobian = linearized(dynamics, y, span)[: 2 * size, : 2 * size]
+    jacobian = linearized(dynamics, y, interval)[: 2 * size, : 2 * size]
     free = not jacobian[size:, size:].any()
     motions = _free(jacobian[size:, :size], scales) if free else _damped(jacobian, scales)
-    inputs = span.inputs(np.array([span.start]))[0]
+    inputs = interval.inputs(np.array([interval.start]))[0]
     found = [_mode(dynamics, y, inputs, motion) for motion in motions]
     return tuple(sorted(found, key=lambda mode: (mode.frequency, mode.decay_rates[0])))
 

@@ -48,8 +48,8 @@ def growth_about(dynamics: Dynamics, point: Equilibrium) -> Growth | None:
 
 def _eigenvalues(dynamics: Dynamics, point: Equilibrium) -> Any:
     """Rates of the linearized motion, 1/s; without damping only one of each two of opposite sign."""
-    size, span = dynamics.size, still(point.inputs)
-    jacobian = linearized(dynamics, dynamics.state(point.coordinates), span)
+    size, interval = dynamics.size, still(point.inputs)
+    jacobian = linearized(dynamics, dynamics.state(point.coordinates), interval)
     if jacobian[size : 2 * size, size : 2 * size].any():
         return np.linalg.eigvals(jacobian[: 2 * size, : 2 * size])
     return np.sqrt(np.linalg.eigvals(jacobian[size : 2 * size, :size]).astype(complex))

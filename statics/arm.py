@@ -176,7 +176,7 @@ class Arm:
                 f"{self.disks} disks with subsegments = {self.subsegments} make {self.segments} segments. "
                 f"Allowed: {MAX_SEGMENTS}."
             )
-        if self.core_density is not None and not self.knows("area"):
+        if self.core_density is not None and not self.has("area"):
             raise InputError("core_density needs the arm's area, which is not given. Give area.")
         for name, values in vars(self.each).items():
             if values is not None and len(values) != self.disks:
@@ -247,7 +247,7 @@ class Arm:
         squares = 3 * (radius**2 + inner_radius**2) + thickness**2
         return {"disk_mass": mass, "disk_inertia": mass * squares / 12}
 
-    def knows(self, name: str) -> bool:
+    def has(self, name: str) -> bool:
         """Whether the number of that name is given, once or for each disk."""
         return getattr(self, name) is not None or getattr(self.each, name, None) is not None
 
@@ -307,7 +307,7 @@ class Arm:
         columns["disk_spacing"] = self._along("disk_spacing")
         columns["reference_curvature"] = self._along("reference_curvature")
         for stiffness, of_section in (("bending_stiffness", "second_moment"), ("axial_stiffness", "area")):
-            if self.knows("youngs_modulus") and self.knows(of_section):
+            if self.has("youngs_modulus") and self.has(of_section):
                 columns[stiffness] = self._along("youngs_modulus") * self._along(of_section)
         if self.core_density is not None:
             columns["core_point_mass"] = AT_POINT * self.core_masses
@@ -340,9 +340,9 @@ class Arm:
     def node_columns(self) -> dict[str, np.ndarray]:
         """Values on each node, by glossary name, shape (segments,)."""
         columns = {}
-        if self.knows("disk_mass"):
+        if self.has("disk_mass"):
             columns["node_mass"] = self.at_disks(self.per_disk("disk_mass")) + self._core_ends()
-        if self.knows("disk_inertia"):
+        if self.has("disk_inertia"):
             columns["node_inertia"] = self.at_disks(self.per_disk("disk_inertia"))
         return columns | self._payload_columns()
 

@@ -119,7 +119,7 @@ def _on_one_smooth_path(arc: ArcLength, before: Equilibrium, point: Equilibrium)
     """Whether both slopes of the path are nearly that of the straight line between the two."""
     way = point.coordinates - before.coordinates
     length = np.sqrt(arc.inner(way, way))
-    if length < SAME and not np.array_equal(before.inputs, point.inputs):
+    if length < SAME:
         return point.unstable_directions == before.unstable_directions
     for parameter, end in ((0.0, before), (1.0, point)):
         off = arc.tangent_at(end.coordinates, parameter)[0] - way

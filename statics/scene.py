@@ -56,7 +56,7 @@ class Scene:
 
     def _check(self, effect: Effect) -> None:
         for quantity in effect.arm_quantities:
-            if getattr(self.arm, quantity) == () or not self.arm.knows(quantity):
+            if getattr(self.arm, quantity) == () or not self.arm.has(quantity):
                 raise InputError(
                     f"effect '{effect.name}' needs the arm's {quantity}, which is not given. "
                     f"Give {quantity}, or leave '{effect.name}' out."

@@ -15,6 +15,11 @@ from statics.errors import InputError
 
 PACES = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Rates to run at, over the rate at which a proportional lag would reach the error."""
+CLOSE, REFINEMENTS = 0.02, 3
+"""Relative distance of a lag from the error that is close enough, and largest number of runs to get there.
+
+The oscillations that a ramp's corners excite make the lag uneven between two rates.
+"""
 
 
 def measure_at_other_rates(
@@ -27,13 +32,18 @@ def measure_at_other_rates(
     own, about, error = (found.figures[n] for n in ("ramp_rate", "quasistatic_rate", "quasistatic_error"))
     if own is None or about is None or error is None:
         raise InputError(f"no quasistatic rate can be measured: {found.missing['quasistatic_rate']}.")
-    lags = tuple(_lag_at(scenario, own, pace * about, progress) for pace in PACES)
+    lags = [_lag_at(scenario, own, pace * about, progress) for pace in PACES]
     rate = rate_within(error, *np.array(lags).T)
+    for _ in range(REFINEMENTS):
+        if rate is None or any(abs(lag / error - 1.0) < CLOSE for _, lag in lags):
+            break
+        lags.append(_lag_at(scenario, own, rate, progress))
+        rate = rate_within(error, *np.array(lags).T)
     missing = {name: why for name, why in found.missing.items() if name != "measured_quasistatic_rate"}
     if rate is None:
         missing["measured_quasistatic_rate"] = "at none of the rates run does the lag exceed the error"
     figures = found.figures | {"measured_quasistatic_rate": rate}
-    return replace(found, measured=lags, figures=figures, missing=missing)
+    return replace(found, measured=tuple(sorted(lags)), figures=figures, missing=missing)
 
 
 def _lag_at(scenario: Scenario, own: float, rate: float, progress: Callable[[str], None]) -> RateLag:

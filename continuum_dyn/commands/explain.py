@@ -79,7 +79,7 @@ def explain(
 def _print_numbers(scene: Any) -> None:
     """Numbers of the arm and of its effects, in SI units, whatever the file describes them by."""
     arm = scene.arm
-    known = [name for name in ARM_NUMBERS if arm.knows(name)]
+    known = [name for name in ARM_NUMBERS if arm.has(name)]
     numbers = {name: getattr(arm.each, name, None) or getattr(arm, name) for name in known}
     for effect in scene.effects:
         numbers |= {name: getattr(effect, name) for name in effect.quantities if hasattr(effect, name)}

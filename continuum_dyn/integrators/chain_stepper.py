@@ -33,8 +33,8 @@ SAME_SLOPE = 1e-9
 class ChainStepper(Stepper):
     """ESDIRK on the chain, O(n) a stage, error in metres.
 
-    Options: ``dynamics`` and ``spans``, whose right-hand side this is (``fun`` is not called), one after the
-    other without a jump of accelerations; ``tolerance``, the largest displacement (m) of any disk by the
+    Options: ``dynamics`` and ``intervals``, whose right-hand side this is (``fun`` is not called), one after
+    the other without a jump of accelerations; ``tolerance``, the largest displacement (m) of any disk by the
     error of one step; ``first_step`` (s), at most; ``tableau``. ``internal_times`` (s) are where internal
     steps begin and end. Where nodes carry no mass the start's accelerations are not known; a first step by
     ``SDIRK4``, which does not need them, ends in consistent ones.
@@ -51,7 +51,7 @@ class ChainStepper(Stepper):
         vectorized: bool = False,
         *,
         dynamics: Dynamics,
-        spans: Sequence[Interval],
+        intervals: Sequence[Interval],
         tolerance: float,
         first_step: float,
         tableau: Tableau = ESDIRK5,
@@ -59,7 +59,7 @@ class ChainStepper(Stepper):
         super().__init__(t0, y0, t_bound)
         self.kernel, segments, disks = dynamics.motion
         self.tables = segments, disks
-        self.spans, self.span = spans, 0
+        self.intervals, self.current = intervals, 0
         self.tableau = tableau
         self.tolerance = tolerance
         self.slip_speed = dynamics.slip_speed
@@ -87,7 +87,7 @@ class ChainStepper(Stepper):
 
     @property
     def _arm(self) -> tuple[np.ndarray, ...]:
-        return (self.spans[self.span].pieces, *self.tables)
+        return (self.intervals[self.current].pieces, *self.tables)
 
     def _step_impl(self) -> tuple[bool, str | None]:
         for column in self.records:
@@ -95,8 +95,8 @@ class ChainStepper(Stepper):
         rows = min(BATCH, self.steps_left) if self.knows_acceleration else 1
         taken, ended, self.internal_rejections = 0, FINISHED, 0
         while taken < rows and ended == FINISHED and self.records[0][taken] < self.t_bound:
-            if self.records[0][taken] >= self.spans[self.span].end:
-                self._enter_next_span(taken)
+            if self.records[0][taken] >= self.intervals[self.current].end:
+                self._enter_next_interval(taken)
             more, ended = self._advance(slice(taken, rows + 1))
             if ended == NO_ROOM and taken > 0 and more == 1:
                 break  # the step ends where the arm cannot be: it is the next batch's first
@@ -110,13 +110,15 @@ class ChainStepper(Stepper):
         self.t, self.y = float(self.records[0][taken]), self.records[1][taken].copy()
         return True, None
 
-    def _enter_next_span(self, row: int) -> None:
+    def _enter_next_interval(self, row: int) -> None:
         """Restart the step size if a slope changes, to resolve the oscillations that this excites.
 
-        A span of next to no length may have been a jump: no step is much longer than the one before.
+        An interval of next to no length may have been a jump: no step is much longer than the one before.
         """
-        self.span += 1
-        slope, slope_before = (self.spans[span].pieces[:, 2] for span in (self.span, self.span - 1))
+        self.current += 1
+        slope, slope_before = (
+            self.intervals[number].pieces[:, 2] for number in (self.current, self.current - 1)
+        )
         if np.any(np.abs(slope - slope_before) > SAME_SLOPE * (np.abs(slope) + np.abs(slope_before))):
             self.next_step = min(self.next_step, self.corner_step)
         if row > 0:
@@ -126,8 +128,8 @@ class ChainStepper(Stepper):
 
     @property
     def _longest_step(self) -> float:
-        """Longest step (s) in the current span: a stiff arm follows a slow drive without an error to see."""
-        amplitude, frequency = self.spans[self.span].pieces[:, 3:5].T
+        """Longest step (s) in this interval: a stiff arm follows a slow drive without a visible error."""
+        amplitude, frequency = self.intervals[self.current].pieces[:, 3:5].T
         if not amplitude.any():
             return np.inf
         slow = frequency[(amplitude != 0.0) & (frequency <= self.frequency)]
@@ -135,11 +137,11 @@ class ChainStepper(Stepper):
         return DRIVE_STEP / fastest if fastest > 0.0 else np.inf
 
     def _advance(self, rows: slice) -> tuple[int, int]:
-        """Steps within one span from the first of these rows on: how many, and how they ended."""
+        """Steps within one interval from the first of these rows on: how many, and how they ended."""
         tableau = self.tableau if self.knows_acceleration else SDIRK4
         ended, taken, self.next_step, self.rate, rejected, iterations = runge_kutta.advance(
             self.kernel.passes,
-            self.spans[self.span].end,
+            self.intervals[self.current].end,
             self.next_step,
             self._longest_step,
             self.rate,

@@ -29,7 +29,7 @@ class Choice(NamedTuple):
 
 
 def choose(
-    dynamics: Dynamics, start: np.ndarray, span: Interval, duration: float, exact: bool = False
+    dynamics: Dynamics, start: np.ndarray, interval: Interval, duration: float, exact: bool = False
 ) -> Choice:
     """The method for ``method = "auto"``, from the modes of the motion linearized at its start.
 
@@ -45,12 +45,12 @@ def choose(
     if dissipated_by(scene) and dynamics.size > FEW:
         return Choice("chain", f"the scene is damped, and stiff because of its {dynamics.size} coordinates")
     if dissipated_by(scene):
-        slowest, fastest = rates(dynamics, start, span)
+        slowest, fastest = rates(dynamics, start, interval)
         found = f"with rates from {slowest:.3g} to {fastest:.3g} 1/s"
         if fastest > STIFF * slowest:
             return Choice("chain", f"the scene is damped and stiff, {found}: fast modes need not be resolved")
         return Choice("explicit", f"the scene is not stiff, {found}: explicit steps are cheapest")
-    slowest = rates(dynamics, start, span)[0] if dynamics.size <= FEW else dynamics.frequency
+    slowest = rates(dynamics, start, interval)[0] if dynamics.size <= FEW else dynamics.frequency
     periods = duration * slowest / (2.0 * np.pi)
     if periods > MANY_PERIODS and not exact and not scene.without_potential:
         return Choice(

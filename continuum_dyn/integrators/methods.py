@@ -77,7 +77,7 @@ def _chain_method(name: str, tableau: Callable[[], Tableau], implicit: bool) -> 
     def options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
         return {
             "dynamics": dynamics,
-            "spans": intervals,
+            "intervals": intervals,
             "tableau": tableau(),
             "tolerance": solver.tolerance(dynamics.scene.arm.total_length),
             "first_step": _first_step(dynamics, intervals[0]),
@@ -87,7 +87,7 @@ def _chain_method(name: str, tableau: Callable[[], Tableau], implicit: bool) -> 
 
 
 def _midpoint_options(dynamics: Dynamics, solver: Solver, intervals: Sequence[Interval]) -> dict[str, Any]:
-    return {"dynamics": dynamics, "span": intervals[0], "step": solver.step}
+    return {"dynamics": dynamics, "interval": intervals[0], "step": solver.step}
 
 
 def _scipy_method(name: str, implicit: bool = False, module: str = "scipy.integrate") -> Integrator:

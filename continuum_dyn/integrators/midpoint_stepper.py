@@ -20,8 +20,8 @@ ROUNDING = 1e-17
 class MidpointStepper(Stepper):
     """Variational midpoint rule for a scene without dissipation.
 
-    Options: ``dynamics`` and ``span``, whose right-hand side this is (``fun`` is not called); ``step`` (s),
-    at most: the time to ``t_bound`` is cut into equal ones.
+    Options: ``dynamics`` and ``interval``, whose right-hand side this is (``fun`` is not called); ``step``
+    (s), at most: the time to ``t_bound`` is cut into equal ones.
     """
 
     steps_left = BATCH
@@ -35,12 +35,12 @@ class MidpointStepper(Stepper):
         vectorized: bool = False,
         *,
         dynamics: Dynamics,
-        span: Interval,
+        interval: Interval,
         step: float,
     ) -> None:
         super().__init__(t0, y0, t_bound)
         self.kernel, segments, disks = dynamics.midpoint
-        self.arm = (span.pieces, segments, disks)
+        self.arm = (interval.pieces, segments, disks)
         self.allowed = ROUNDING * dynamics.scene.arm.total_length
         self.steps = max(1, math.ceil((t_bound - t0) / step * (1.0 - 1e-12)))
         self.size, self.start, self.taken = (t_bound - t0) / self.steps, t0, 0

@@ -57,20 +57,23 @@ class Dynamics:
         u = np.zeros_like(coordinates) if rates is None else rates
         return np.concatenate([coordinates.ravel(), u.ravel(), [0.0, 0.0]])
 
-    def rate(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
+    def rate(self, t: float, y: np.ndarray, interval: Interval) -> np.ndarray:
         """dy/dt."""
-        if span is not self._bound[0]:
+        if interval is not self._bound[0]:
             kernel, *tables = self.linearized
-            self._bound = span, accelerations.rate.bind(kernel.passes, span.pieces, *tables, self.dofs)
+            self._bound = (
+                interval,
+                accelerations.rate.bind(kernel.passes, interval.pieces, *tables, self.dofs),
+            )
         y_rate = np.empty_like(y)
         self._bound[1](t, y, y_rate)
         return y_rate
 
-    def jacobian(self, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
+    def jacobian(self, t: float, y: np.ndarray, interval: Interval) -> np.ndarray:
         """d(rate)/dy, exact."""
         kernel, *tables = self.linearized
         jacobian = np.zeros((y.size, y.size))
-        accelerations.rate_jacobian(kernel.passes, span.pieces, *tables, self.dofs, t, y, jacobian)
+        accelerations.rate_jacobian(kernel.passes, interval.pieces, *tables, self.dofs, t, y, jacobian)
         return jacobian
 
     def clearance(self, y: np.ndarray) -> float:
@@ -87,8 +90,8 @@ class Dynamics:
         arm, (kernel, table, _) = self.scene.arm, self.motion
         q = y[: self.size].reshape(arm.disks, arm.subsegments, self.dofs)
         segments = table.reshape(*q.shape[:2], -1)
-        spans = zip(segments, q, strict=True)
-        return int(np.argmin([accelerations.clearance_of(kernel.passes, *span) for span in spans])) + 1
+        rows = zip(segments, q, strict=True)
+        return int(np.argmin([accelerations.clearance_of(kernel.passes, *row) for row in rows])) + 1
 
     @cached_property
     def frequency(self) -> float:

@@ -50,7 +50,7 @@ def _check(scene: Scene) -> None:
     needed += ["disk_mass"] if scene.has("inertia") else []
     needed += ["disk_inertia"] if scene.has("rotary_inertia") else []
     for name in needed:
-        if not arm.knows(name):
+        if not arm.has(name):
             raise InputError(f"damping_ratio needs the arm's {name}. Give it, or retardation_time instead.")
     if not (scene.has("inertia") or scene.has("rotary_inertia")):
         raise InputError("damping_ratio needs inertia. Add inertia = {} to [effects].")

@@ -117,16 +117,16 @@ def integrate(
     before = None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        for joined in _group(dynamics, solver, timeline):
+        for intervals in _group(dynamics, solver, timeline):
             if before is not None:
-                add_jump(dynamics, before, joined[0], monitor)
-            before = joined[-1]
+                add_jump(dynamics, before, intervals[0], monitor)
+            before = intervals[-1]
             side = "right" if before.end == timeline.end else "left"
             until = int(np.searchsorted(samples, before.end, side=side))
-            stepper = _solve(dynamics, solver, joined, samples[done:until], monitor, gathered)
+            stepper = _solve(dynamics, solver, intervals, samples[done:until], monitor, gathered)
             counters.update(_count_work(stepper, dynamics, solver))
             if stepper.status == "failed":
-                _add_last_reached(gathered, joined, monitor.reached)
+                _add_last_reached(gathered, intervals, monitor.reached)
                 break
             done = until
     counters["steps"] = monitor.steps - steps
@@ -139,13 +139,13 @@ def integrate(
 
 
 def _add_last_reached(
-    gathered: Samples, joined: Sequence[Interval], reached: tuple[float, np.ndarray]
+    gathered: Samples, intervals: Sequence[Interval], reached: tuple[float, np.ndarray]
 ) -> None:
     """Add the last acceptable state of a run that stopped early, unless it is a sample already."""
     t, y = reached
     if t > gathered.latest:
         time = np.array([t])
-        gathered.add(time, y[None, :], inputs_at(joined, time), np.zeros(1))
+        gathered.add(time, y[None, :], inputs_at(intervals, time), np.zeros(1))
 
 
 def _count_work(stepper: Any, dynamics: Dynamics, solver: Solver) -> dict[str, int]:
@@ -180,7 +180,7 @@ def _group(dynamics: Dynamics, solver: Solver, timeline: Timeline) -> Iterator[I
 def _solve(
     dynamics: Dynamics,
     solver: Solver,
-    joined: Intervals,
+    intervals: Intervals,
     at: np.ndarray,
     monitor: Monitor,
     gathered: Samples,
@@ -191,12 +191,12 @@ def _solve(
     """
     method = METHODS[solver.method]
     stepper: Any = method.stepper(
-        lambda t, y: dynamics.rate(t, y, joined[0]),
-        joined[0].start,
+        lambda t, y: dynamics.rate(t, y, intervals[0]),
+        intervals[0].start,
         monitor.reached[1],
-        joined[-1].end,
+        intervals[-1].end,
         monitor=monitor,
-        **method.options(dynamics, solver, joined),
+        **method.options(dynamics, solver, intervals),
     )
     done = 0
     while stepper.status == "running":
@@ -206,7 +206,7 @@ def _solve(
         if acceptable and until > done:
             times = at[done:until]
             states = stepper.dense_output()(times).T
-            gathered.add(times, states, inputs_at(joined, times), _step_sizes(stepper, times))
+            gathered.add(times, states, inputs_at(intervals, times), _step_sizes(stepper, times))
             done = until
     return stepper
 

@@ -46,7 +46,7 @@ def unused_numbers(scenario: Scenario) -> Iterator[str]:
 def _given(scenario: Scenario) -> set[str]:
     """The numbers that the table [arm] of a file gives itself; without a file, all known ones."""
     arm = scenario.scene.arm
-    known = set(filter(arm.knows, USED_BY))
+    known = set(filter(arm.has, USED_BY))
     core = arm.youngs_modulus, arm.core_density
     if any(core == (each.youngs_modulus, each.density) for each in MATERIALS.values()):
         known.discard("core_density")

@@ -23,7 +23,7 @@ FIRST_MODE = 3.516
 
 def core_radius(arm: Arm) -> np.ndarray | None:
     """Radius of the core before each disk (m) if it is round, from its area and second moment."""
-    if not (arm.knows("area") and arm.knows("second_moment")):
+    if not (arm.has("area") and arm.has("second_moment")):
         return None
     return 2.0 * np.sqrt(arm.per_disk("second_moment") / arm.per_disk("area"))
 

@@ -121,6 +121,7 @@ def test_output_in_ascii_replaces_what_it_does_not_have(log: Path, scenario: Pat
     assert given_back.stdout == scenario.read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="names are UTF-8 elsewhere")
 def test_files_of_names_that_are_not_utf_8(tmp_path: Path, scenario: Path) -> None:
     folder = Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff"))
@@ -139,6 +140,7 @@ def test_files_of_names_that_are_not_utf_8(tmp_path: Path, scenario: Path) -> No
     assert len(list(folder.iterdir())) == 6
 
 
+@pytest.mark.slow
 def test_any_backend_of_matplotlib_may_be_named(log: Path, tmp_path: Path) -> None:
     result = program("plot", log, "--out", tmp_path / "x.png", env={"MPLBACKEND": "none of them"})
     assert result.returncode == 0, result.stderr

@@ -34,9 +34,14 @@ UNUSUAL = {
 SLOW = {
     *UNUSUAL,
     "a_step_every_5_ms",
+    "duration_of_1e4_s",
     "profile_of_1e5_rows",
+    "release_from_20_newtons",
     "sine_above_the_highest_bending_mode",
+    "soft_core",
+    "step_to_25_newtons",
     "tolerance_of_1e-12",
+    "tolerance_of_1e-9",
     "undamped_for_1e5_periods",
     "whip_through_several_turns",
 }

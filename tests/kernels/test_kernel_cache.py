@@ -197,6 +197,7 @@ def run_unactuated(out: Path, **environment: str) -> subprocess.CompletedProcess
     )
 
 
+@pytest.mark.slow
 def test_without_cache_the_folder_is_not_even_looked_at(tmp_path: Path, folder: Path) -> None:
     with no_cache():
         expected = at_rest(load_scenario(UNACTUATED).scene).tip

@@ -106,9 +106,9 @@ def test_one_segment_on_a_rotating_base_feels_the_centrifugal_force() -> None:
     dynamics = Dynamics(scene)
     y = dynamics.state(np.array([[phi]]), np.array([[u]]))
     rotating = np.array([[0.0, value, 0.0, 0.0, 0.0, 0.0] for value in (0, 0, 1.1, 0, 0, omega, 0, 0, 0)])
-    span = Interval(0.0, 1.0, rotating)
-    assert dynamics.rate(0.0, y, span)[1] == pytest.approx(w, rel=1e-11)
-    seen = dynamics.observe(y[None], span.inputs(np.zeros(1)))
+    interval = Interval(0.0, 1.0, rotating)
+    assert dynamics.rate(0.0, y, interval)[1] == pytest.approx(w, rel=1e-11)
+    seen = dynamics.observe(y[None], interval.inputs(np.zeros(1)))
     assert seen.ledger["input_power"][0] == pytest.approx(moment * omega, rel=1e-11)
 
 
@@ -118,12 +118,14 @@ def test_one_segment_on_a_rotating_base_feels_the_centrifugal_force() -> None:
 def test_jacobian_is_exact_where_the_base_moves() -> None:
     """The integrand of the work, too, against differences of sixth order."""
     dynamics = Dynamics(small_arm(Gravity(), MaterialDamping(1.2e-3)))
-    _, span, *_ = driven(*SWEPT, 0.2)
+    _, interval, *_ = driven(*SWEPT, 0.2)
     random = np.random.default_rng(4)
     y = dynamics.state(random.uniform(-0.5, 0.5, (2, 1)), random.uniform(-20.0, 20.0, (2, 1)))
     size = 2 * dynamics.size
-    expected = difference_matrix(lambda y: dynamics.rate(0.03, y, span), y, np.repeat([1e-3, 1e-1], [2, 4]))
-    found = dynamics.jacobian(0.03, y, span)
+    expected = difference_matrix(
+        lambda y: dynamics.rate(0.03, y, interval), y, np.repeat([1e-3, 1e-1], [2, 4])
+    )
+    found = dynamics.jacobian(0.03, y, interval)
     scale = np.abs(expected[:, :size]).max(axis=1, keepdims=True)
     assert np.abs((found - expected)[:, :size] / np.maximum(scale, 1e-6)).max() < 1e-8
 
@@ -218,8 +220,8 @@ def test_modes_are_those_of_the_arm_on_its_base_at_rest(shaken: Scenario) -> Non
 def lowest_mode(scene: Scene) -> Mode:
     """About the straight arm."""
     dynamics, inputs = Dynamics(scene), scene.check_tension([])
-    span = cut_into_intervals([Constant(float(value)) for value in inputs], 1.0).first
-    return modes(dynamics, dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs))), span)[0]
+    interval = cut_into_intervals([Constant(float(value)) for value in inputs], 1.0).first
+    return modes(dynamics, dynamics.state(np.zeros((scene.arm.segments, dynamics.dofs))), interval)[0]
 
 
 @pytest.mark.slow

@@ -230,11 +230,11 @@ def test_exact_jacobian_equals_differences_of_the_rate(scene_of: Callable[[int],
     scene = scene_of(4)
     dynamics = Dynamics(scene)
     q, u = random_state(scene, seed=7)
-    y, span = dynamics.state(q, u), pulling(scene)
+    y, interval = dynamics.state(q, u), pulling(scene)
     of_q, of_u = [0.01, 0.01 * scene.arm.rest_length], [1.0, 0.1]
     steps = np.array([*of_q[: dynamics.dofs], *of_u[: dynamics.dofs], 1.0, 1.0])
-    expected = difference_matrix(lambda y: dynamics.rate(TIME, y, span), y, steps[kinds_of(dynamics)])
-    assert block_error(dynamics.jacobian(TIME, y, span), expected, kinds_of(dynamics)) < 1e-9
+    expected = difference_matrix(lambda y: dynamics.rate(TIME, y, interval), y, steps[kinds_of(dynamics)])
+    assert block_error(dynamics.jacobian(TIME, y, interval), expected, kinds_of(dynamics)) < 1e-9
 
 
 # ---- compiled code, interpreted code, and the static kernel ----

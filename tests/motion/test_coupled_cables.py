@@ -91,11 +91,11 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
 ) -> None:
     scene = scene_of(kinds, subsegments, moves=True, start=start)
     oracle, dynamics = WholeCables(scene, drive_of(kinds)), Dynamics(scene)
-    span = Interval(0.0, 1.0, pieces_of(scene, oracle.drive))
+    interval = Interval(0.0, 1.0, pieces_of(scene, oracle.drive))
     for seed in range(3):
         q, u = random_state(scene, seed, bend=0.7)
         y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
-        rate = dynamics.rate(0.0, y, span)
+        rate = dynamics.rate(0.0, y, interval)
         expected = whole_arm.accelerations(oracle.arm, q, u, oracle.in_motion(q, u))
         assert relative_error(rate[q.size : 2 * q.size].reshape(q.shape), expected) < 1e-11
         drives, lengths = oracle.drives(q), oracle.lengths
@@ -114,12 +114,12 @@ def test_motion_agrees_with_kanes_method_under_the_tensions_of_the_laws(
 )
 def test_jacobian_of_the_motion_is_exact(kinds: tuple[CableKind, ...], start: int | None) -> None:
     scene = scene_of(kinds, moves=True, start=start)
-    dynamics, span = Dynamics(scene), Interval(0.0, 1.0, pieces_of(scene, drive_of(kinds)))
+    dynamics, interval = Dynamics(scene), Interval(0.0, 1.0, pieces_of(scene, drive_of(kinds)))
     q, u = random_state(scene, seed=1, bend=0.7)
     y = np.concatenate([q.ravel(), u.ravel(), [0.0, 0.0]])
     steps = np.concatenate([np.tile([1e-3, 1e-5], len(q)), np.tile([1e-2, 1e-4], len(q)), [1.0, 1.0]])
-    expected = difference_matrix(lambda y: dynamics.rate(0.0, y, span), y, steps)
-    found = dynamics.jacobian(0.0, y, span)
+    expected = difference_matrix(lambda y: dynamics.rate(0.0, y, interval), y, steps)
+    found = dynamics.jacobian(0.0, y, interval)
     assert np.abs(found - expected).max(axis=1) == pytest.approx(0.0, abs=1e-6 * np.abs(expected).max())
     np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-8 * np.abs(expected).max())
 

@@ -41,8 +41,8 @@ def test_constant_factor_is_a_constant_load(shaken: Scenario) -> None:
 def rate_of(scenario: Scenario) -> np.ndarray:
     """dy/dt of one state that moves."""
     y = np.append(np.random.default_rng(1).uniform(-1, 1, 8), [0.0, 0.0])
-    (span,) = cut_into_intervals(scenario.profiles, 1.0)
-    return Dynamics(scenario.scene).rate(0.3, y, span)
+    (interval,) = cut_into_intervals(scenario.profiles, 1.0)
+    return Dynamics(scenario.scene).rate(0.3, y, interval)
 
 
 @pytest.mark.slow
@@ -78,11 +78,11 @@ def test_small_oscillation_has_the_amplitude_and_phase_of_the_linear_arm(shaken:
     still = with_loads(shaken, load, factors=(Constant(0.0),)).profiles
     pushed = with_loads(shaken, load, factors=(Constant(1.0),)).profiles
     y = dynamics.state(rest.coordinates)
-    (span,), (with_push,) = cut_into_intervals(still, 1.0), cut_into_intervals(pushed, 1.0)
+    (interval,), (with_push,) = cut_into_intervals(still, 1.0), cut_into_intervals(pushed, 1.0)
     size = 2 * dynamics.size
     response = np.linalg.solve(
-        1j * omega * np.eye(size) - dynamics.jacobian(0.0, y, span)[:size, :size],
-        (dynamics.rate(0.0, y, with_push) - dynamics.rate(0.0, y, span))[:size],
+        1j * omega * np.eye(size) - dynamics.jacobian(0.0, y, interval)[:size, :size],
+        (dynamics.rate(0.0, y, with_push) - dynamics.rate(0.0, y, interval))[:size],
     )
     found = motion(small)
     late = found.time > 1.5

@@ -70,7 +70,10 @@ def assert_right(scenario: Scenario, *tolerances: float) -> None:
 
 
 @pytest.mark.parametrize("friction", [0.01, 0.2, 1.0])
-@pytest.mark.parametrize(("mean", "amplitude"), [(1.0, 0.8), (5.0, 4.0), (15.0, 14.0), (20.0, 1.0)])
+@pytest.mark.parametrize(
+    ("mean", "amplitude"),
+    [(15.0, 14.0), *(pytest.param(*pull, marks=pytest.mark.slow) for pull in ((1, 0.8), (5, 4), (20, 1)))],
+)
 def test_slow_pull_is_right_at_any_tolerance(friction: float, mean: float, amplitude: float) -> None:
     case = pulled(Sine(mean, amplitude, 0.25), friction)
     assert_right(case, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
@@ -97,7 +100,10 @@ def test_slip_that_turns_three_times_is_right_at_any_tolerance() -> None:
     assert_right(replace(case, study=replace(case.study, static_path=False)), 1e-3, 1e-5, 1e-7)
 
 
-@pytest.mark.parametrize("friction", [0.02, 0.08, 0.1, 0.12, 0.15, 0.2, 0.3])
+@pytest.mark.parametrize(
+    "friction",
+    [0.08, *(pytest.param(mu, marks=pytest.mark.slow) for mu in (0.02, 0.1, 0.12, 0.15, 0.2, 0.3))],
+)
 def test_wires_held_by_motors_do_not_chatter(friction: float) -> None:
     """At the default tolerance 0.02, 0.08, 0.15 and 0.2 took up to 1.1e6 steps."""
     assert_right(endoscope(friction), 1e-3, 1e-5, 1e-7, 1e-9)

@@ -77,20 +77,20 @@ def test_tableau_has_its_order_and_is_stiffly_accurate_and_l_stable() -> None:
 
 
 def fixed_steps(
-    dynamics: Dynamics, span: Interval, y: np.ndarray, count: int, tableau: Tableau
+    dynamics: Dynamics, interval: Interval, y: np.ndarray, count: int, tableau: Tableau
 ) -> np.ndarray:
     """The state at the span's end after ``count`` equal steps."""
     kernel, segments, disks = dynamics.motion
-    arm = (span.pieces, segments, disks)
+    arm = (interval.pieces, segments, disks)
     shape = (count + 1, dynamics.scene.arm.disks, dynamics.dofs)
     records = (np.empty(shape[0]), np.empty((shape[0], y.size)), np.empty(shape), np.empty((shape[0], 3, 2)))
     method = (tableau.a, tableau.c, tableau.error_weights, tableau.predictor, 0.0, np.inf)
     n, dofs = shape[1:]
     stages = tuple(np.empty((len(tableau.c), n, dofs)) for _ in range(3))
     workspace = np.empty((n, kernel.widths["chain"])), np.empty((6, n, dofs)), np.empty(SCALARS)
-    start_records(kernel.passes, span.start, y, arm, records)
+    start_records(kernel.passes, interval.start, y, arm, records)
     times, states, accelerations, _ = records
-    h = (span.end - span.start) / count
+    h = (interval.end - interval.start) / count
     for row in range(count):
         stages[2][0] = accelerations[row]
         arguments = (1e-11, arm, stages, workspace, states[row + 1])
@@ -115,14 +115,17 @@ def test_steps_of_fixed_size_have_the_stated_order(
     effects = [effect for effect in plain.effects if effect.name != "extension"]
     hardly_damped = MaterialDamping(retardation_time=1e-9)  # more would be stiff, and stiffness costs order
     scene = Scene(plain.arm, (*effects, Inertia(), RotaryInertia(), hardly_damped))
-    dynamics, (span,) = Dynamics(scene), cut_into_intervals((Sine(1.0, 0.9, 9.0),), 0.04)
+    dynamics, (interval,) = Dynamics(scene), cut_into_intervals((Sine(1.0, 0.9, 9.0),), 0.04)
     y = dynamics.state(equilibrium(scene, 0.3).coordinates)
-    reference = fixed_steps(dynamics, span, y, 1280, ESDIRK5)
+    reference = fixed_steps(dynamics, interval, y, 1280, ESDIRK5)
     scale = dynamics.scales()[: 2 * dynamics.size]
-    errors = [np.abs((fixed_steps(dynamics, span, y, n, tableau) - reference) / scale).max() for n in counts]
+    errors = [
+        np.abs((fixed_steps(dynamics, interval, y, n, tableau) - reference) / scale).max() for n in counts
+    ]
     assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-order, abs=0.4)
 
 
+@pytest.mark.slow
 def test_tip_error_follows_the_tolerance(step_response: Scenario) -> None:
     brief = replace(step_response, study=MotionStudy(0.1, samples=101))
     reference = motion(replace(brief, solver=Solver("Radau", rtol=1e-11, atol=1e-14)))
@@ -169,10 +172,12 @@ def test_work_is_counted_in_segment_evaluations(step_response: Scenario) -> None
 
 
 def by_solve_ivp(scenario: Scenario, **options: Any) -> Any:
-    dynamics, (span,) = Dynamics(scenario.scene), cut_into_intervals(scenario.profiles, 0.2)
+    dynamics, (interval,) = Dynamics(scenario.scene), cut_into_intervals(scenario.profiles, 0.2)
     y = dynamics.state(equilibrium(scenario.scene, scenario.initial_inputs).coordinates)
-    asked = {"dynamics": dynamics, "spans": [span], "tolerance": 1e-8, "first_step": 1e-4}
-    return solve_ivp(lambda t, y: dynamics.rate(t, y, span), (0.0, 0.2), y, ChainSolver, **asked, **options)
+    asked = {"dynamics": dynamics, "intervals": [interval], "tolerance": 1e-8, "first_step": 1e-4}
+    return solve_ivp(
+        lambda t, y: dynamics.rate(t, y, interval), (0.0, 0.2), y, ChainSolver, **asked, **options
+    )
 
 
 @pytest.mark.parametrize("disks", [4, 30])

@@ -122,25 +122,28 @@ def test_a_step_is_symplectic() -> None:
 
 
 def test_motion_turned_back_returns_to_its_start() -> None:
-    dynamics, (span,) = Dynamics(stiff()), cut_into_intervals((Constant(1.0),), 0.5)
+    dynamics, (interval,) = Dynamics(stiff()), cut_into_intervals((Constant(1.0),), 0.5)
     y = dynamics.state(equilibrium(dynamics.scene, 2.0).coordinates)
-    there = by_solve_ivp(dynamics, span, y, step=1e-4).y[:, -1]
+    there = by_solve_ivp(dynamics, interval, y, step=1e-4).y[:, -1]
     moved = there * np.repeat([1.0, -1.0, 1.0], [4, 4, 2])
-    back = by_solve_ivp(dynamics, span, moved, step=1e-4).y[:, -1]
+    back = by_solve_ivp(dynamics, interval, moved, step=1e-4).y[:, -1]
     assert np.abs(there[:4] - y[:4]).max() > 0.01
     np.testing.assert_allclose(back[:4], y[:4], atol=1e-11)
     np.testing.assert_allclose(back[4:8], 0.0, atol=1e-8)
     assert back[8] == pytest.approx(0.0, abs=1e-12)  # the work comes back, too
 
 
-def by_solve_ivp(dynamics: Dynamics, span: Interval, y: np.ndarray, step: float, **options: object) -> Any:
-    asked = {"dynamics": dynamics, "span": span, "step": step}
-    return solve_ivp(lambda _t, y: y, (span.start, span.end), y, MidpointSolver, **asked, **options)  # pyright: ignore[reportArgumentType, reportCallIssue]
+def by_solve_ivp(
+    dynamics: Dynamics, interval: Interval, y: np.ndarray, step: float, **options: object
+) -> Any:
+    asked = {"dynamics": dynamics, "interval": interval, "step": step}
+    return solve_ivp(lambda _t, y: y, (interval.start, interval.end), y, MidpointSolver, **asked, **options)  # pyright: ignore[reportArgumentType, reportCallIssue]
 
 
 # ---- motions ----
 
 
+@pytest.mark.slow
 def test_midpoint_rule_is_of_second_order_under_a_changing_tension() -> None:
     scene, duration = stiff(), 0.05
     drive: tuple[Profile, ...] = (Sine(1.0, 0.9, 30.0),)
@@ -205,12 +208,12 @@ def test_power_ledger_of_a_driven_arm_closes_to_second_order() -> None:
 
 
 def test_sampling_does_not_change_the_steps() -> None:
-    dynamics, (span,) = Dynamics(stiff()), cut_into_intervals((Step(before=2.0, after=0.0),), 0.2)
+    dynamics, (interval,) = Dynamics(stiff()), cut_into_intervals((Step(before=2.0, after=0.0),), 0.2)
     y = dynamics.state(equilibrium(dynamics.scene, 2.0).coordinates)
-    plain = by_solve_ivp(dynamics, span, y, step=1e-4, dense_output=True)
+    plain = by_solve_ivp(dynamics, interval, y, step=1e-4, dense_output=True)
     np.testing.assert_allclose(plain.sol(plain.t), plain.y, rtol=1e-9, atol=1e-12)
     at = np.linspace(0.0, 0.2, 57)
-    sampled = by_solve_ivp(dynamics, span, y, step=1e-4, t_eval=at)
+    sampled = by_solve_ivp(dynamics, interval, y, step=1e-4, t_eval=at)
     assert sampled.nfev == plain.nfev
     np.testing.assert_allclose(sampled.y, plain.sol(at), rtol=1e-9, atol=1e-12)
 
@@ -256,11 +259,11 @@ def test_fastest_frequency_is_the_same_by_iteration(
     monkeypatch: pytest.MonkeyPatch, disks: int, extension: bool
 ) -> None:
     scene = moving(rone2012(disks=disks), damping=False) if extension else stiff(disks)
-    dynamics, (span,) = Dynamics(scene), cut_into_intervals((Step(before=2.0, after=0.0),), 1.0)
+    dynamics, (interval,) = Dynamics(scene), cut_into_intervals((Step(before=2.0, after=0.0),), 1.0)
     y = dynamics.state(equilibrium(scene, 2.0).coordinates)
-    dense = fastest_frequency(dynamics, span, y)
+    dense = fastest_frequency(dynamics, interval, y)
     monkeypatch.setattr(modes, "MOST_DENSE", 0)
-    assert fastest_frequency(dynamics, span, y) == pytest.approx(dense, rel=1e-3)
+    assert fastest_frequency(dynamics, interval, y) == pytest.approx(dense, rel=1e-3)
 
 
 # ---- what does not fit is refused ----

@@ -198,6 +198,7 @@ def test_core_with_mass_swings_like_a_cantilever_beam() -> None:
     np.testing.assert_allclose((4 * fine - coarse) / 3, CANTILEVER, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_mass_along_the_core_is_better_than_at_the_ends_of_its_segments() -> None:
     """Twenty segments: the first frequency, which goes by the square, to 0.05 % instead of 5 %."""
     along, at_ends = (roots(beam(20, core=core)) / CANTILEVER - 1 for core in (1.0 - 1e-12, 0.0))
@@ -304,7 +305,7 @@ def test_light_disks_swing_as_their_rotary_inertia_alone_lets_them(mass: float, 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("damping", [True, False])
-@pytest.mark.parametrize("mass", [1e-20, 1e-60, 1e-100])
+@pytest.mark.parametrize("mass", [1e-20, *(pytest.param(m, marks=pytest.mark.slow) for m in (1e-60, 1e-100))])
 def test_modes_that_rounding_drowns_are_refused(mass: float, damping: bool, friction: float) -> None:
     with pytest.raises(InputError, match="modes are lost in rounding: rates of the linearized motion go"):
         modes_at_rest(of_disks_with_hardly_any_mass(mass, damping, friction))

@@ -75,6 +75,7 @@ def test_undamped_release_keeps_its_energy(method: Method) -> None:
     np.testing.assert_array_equal(ledger["input_work"], 0.0)
 
 
+@pytest.mark.slow
 def test_undamped_release_with_extension_keeps_its_energy() -> None:
     scene = moving(rone2012(), damping=False)
     solver = Solver("DOP853", rtol=1e-12, atol=1e-15)
@@ -155,6 +156,7 @@ def test_gravity_alone_swings_a_hanging_arm_about_rest() -> None:
     assert run.outcome is Outcome.SETTLED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["LSODA", "Radau", "BDF"])
 def test_drive_that_starts_gently_from_rest_is_not_stepped_over(method: Method) -> None:
     study = MotionStudy(100.0, samples=2)

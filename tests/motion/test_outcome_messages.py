@@ -44,7 +44,7 @@ def test_message_names_what_is_not_settled_with_its_limit(gap: float, speed: flo
     message = unsettled_message(TIME, gap * decay, speed * decay, WITHIN, np.inf)
     assert said in message
     settled = 3.0 + np.log(max(gap, speed) / WITHIN) / 0.2
-    assert f"settles after some {settled:.2g} s" in message
+    assert f"settles after about {settled:.2g} s" in message
     assert "slip_speed" not in message
     constant = np.ones(TIME.size)
     assert "does not decay" in unsettled_message(TIME, gap * constant, speed * constant, WITHIN, np.inf)
@@ -52,7 +52,7 @@ def test_message_names_what_is_not_settled_with_its_limit(gap: float, speed: flo
 
 def test_creep_of_cables_that_rub_is_named_where_it_alone_is_left() -> None:
     still, slow = np.full(TIME.size, 1e-6), np.full(TIME.size, 2e-4)
-    assert "a smaller slip_speed than 1e-05 m/s" in unsettled_message(TIME, still, slow, WITHIN, 1e-5)
+    assert "a slip_speed below 1e-05 m/s" in unsettled_message(TIME, still, slow, WITHIN, 1e-5)
     assert "slip_speed" not in unsettled_message(TIME, slow, slow, WITHIN, 1e-5)
 
 

@@ -163,8 +163,8 @@ def test_budget_of_seconds_counts_the_static_path_of_a_motion(monkeypatch: pytes
 def test_forces_that_are_not_numbers_end_as_diverged(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     plain_rate = Dynamics.rate
 
-    def broken(self: Dynamics, t: float, y: np.ndarray, span: Interval) -> np.ndarray:
-        return plain_rate(self, t, y, span) * (np.nan if t > 0.01 else 1.0)
+    def broken(self: Dynamics, t: float, y: np.ndarray, interval: Interval) -> np.ndarray:
+        return plain_rate(self, t, y, interval) * (np.nan if t > 0.01 else 1.0)
 
     monkeypatch.setattr(Dynamics, "rate", broken)
     run = simulate(step_to(1.0, method=method), budget=Budget(seconds=20.0))

@@ -22,9 +22,9 @@ def test_equilibrium_is_a_fixed_point_of_the_motion(case: Case) -> None:
         q=rest.coordinates,
         u=np.zeros_like(case.u),
     )
-    dynamics, y, span = dynamics_of(still)
+    dynamics, y, interval = dynamics_of(still)
     size, parts = dynamics.size, len(scene.coordinates)
-    acceleration = dynamics.rate(0.0, y, span)[size : 2 * size]
-    by_q = dynamics.jacobian(0.0, y, span)[size : 2 * size, :size]
+    acceleration = dynamics.rate(0.0, y, interval)[size : 2 * size]
+    by_q = dynamics.jacobian(0.0, y, interval)[size : 2 * size, :size]
     step = np.linalg.solve(by_q, acceleration) / np.tile([1.0, scene.arm.rest_length][:parts], len(case.q))
     assert np.abs(step).max() < 1e-10  # rad, or of the segment's length

@@ -137,10 +137,10 @@ def turned(case: Case, angle: float) -> Case:
 
 def assert_same_motion(found: Case, plain: Case) -> None:
     """Accelerations differ by less than what 1e-11 rad, or that part of a segment, would change them."""
-    dynamics, y, span = dynamics_of(plain)
+    dynamics, y, interval = dynamics_of(plain)
     size, parts = dynamics.size, len(plain.scene.coordinates)
     unit = np.tile([1.0, plain.scene.arm.rest_length][:parts], plain.scene.arm.segments)
-    slopes = np.abs(dynamics.jacobian(0.0, y, span)[size : 2 * size, :size]) @ unit
+    slopes = np.abs(dynamics.jacobian(0.0, y, interval)[size : 2 * size, :size]) @ unit
     difference = np.abs(accelerations(found) - accelerations(plain)).ravel()
     assert (difference <= SAME * slopes).all()
 
@@ -230,7 +230,7 @@ def test_neither_the_mirror_nor_units_nor_the_view_nor_order_change_the_motion(
 
 def error_for_the_same(case: Case) -> np.ndarray:
     """What 1e-11 rad, or that part of a segment, would change each acceleration by."""
-    dynamics, y, span = dynamics_of(case)
+    dynamics, y, interval = dynamics_of(case)
     size, parts = dynamics.size, len(case.scene.coordinates)
     unit = np.tile([1.0, case.scene.arm.rest_length][:parts], case.scene.arm.segments)
-    return SAME * (np.abs(dynamics.jacobian(0.0, y, span)[size : 2 * size, :size]) @ unit)
+    return SAME * (np.abs(dynamics.jacobian(0.0, y, interval)[size : 2 * size, :size]) @ unit)

@@ -95,6 +95,7 @@ def test_effect_takes_one_file_one_registry_line_and_its_glossary_entries() -> N
     assert [line[0] for line in registry.text.splitlines()] == [" ", "+"]
 
 
+@pytest.mark.slow
 def test_scenario_of_the_walk_through_rests_where_the_page_says(answers: dict[str, Any]) -> None:
     answer = answers["run"]
     deflection = said(r"to rest at y = (\S+) mm")
@@ -108,11 +109,13 @@ def test_deflection_without_the_tissue_is_what_the_page_says() -> None:
     assert f"{open_air:.4f}" == said(r"\$FL\^3/3EJ\$ = (\S+) mm")
 
 
+@pytest.mark.slow
 def test_checks_of_the_walk_through_pass(program: Path) -> None:
     (check,) = (block.path for block in blocks() if block.path.startswith("tests/"))
     assert "2 passed" in run(program, "-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", check)
 
 
+@pytest.mark.slow
 def test_new_effect_is_explained_as_any_other(answers: dict[str, Any]) -> None:
     text = answers["explain"]
     assert "elastic_foundation on each disk" in text
@@ -120,10 +123,12 @@ def test_new_effect_is_explained_as_any_other(answers: dict[str, Any]) -> None:
     assert "foundation_stiffness (N/m): force of an elastic foundation on a node" in text
 
 
+@pytest.mark.slow
 def test_new_effect_has_a_value_for_each_of_its_quantities(answers: dict[str, Any]) -> None:
     assert answers["quantities"] == [["foundation_stiffness"]] * 2
 
 
+@pytest.mark.slow
 def test_new_effect_raises_the_squares_of_all_frequencies_by_its_stiffness_over_mass(
     answers: dict[str, Any],
 ) -> None:

@@ -72,6 +72,7 @@ def test_lock_of_a_killed_run_is_none(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_variants_beside_each_other_leave_a_whole_log_each(tmp_path: Path) -> None:
     changes = [("--set", f"cables.upper.tension.after={tension}") for tension in (0.5, 1.0, 1.5)]
     started = time.monotonic()

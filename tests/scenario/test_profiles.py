@@ -37,9 +37,9 @@ from statics import InputError
 def sampled(profile: Profile | Rate, times: np.ndarray, duration: float) -> np.ndarray:
     stretches = cut_into_intervals((profile,), duration)
     values = np.empty(times.size)
-    for span in stretches:
-        inside = (times >= span.start) & (times <= span.end)
-        values[inside] = span.inputs(times[inside])[:, 0]
+    for interval in stretches:
+        inside = (times >= interval.start) & (times <= interval.end)
+        values[inside] = interval.inputs(times[inside])[:, 0]
     return values
 
 
@@ -93,7 +93,7 @@ def test_table_is_linear_between_its_rows(rows: dict[float, float]) -> None:
 def test_every_corner_of_every_profile_ends_a_span() -> None:
     profiles = (Step(0.0, 1.0, at=0.3), Ramp(0.0, 1.0, 0.3, 0.8), Table((0.5, 0.6), (0.0, 1.0)))
     stretches = cut_into_intervals(profiles, 1.0)
-    assert [span.start for span in stretches] == [0.0, 0.3, 0.5, 0.6, 0.8]
+    assert [interval.start for interval in stretches] == [0.0, 0.3, 0.5, 0.6, 0.8]
     assert all(earlier.end == later.start for earlier, later in pairwise(stretches))
 
 
@@ -141,7 +141,11 @@ def test_a_jump_and_a_wave_start_the_steps_anew() -> None:
     step, wave = Step(0.0, 1.0, at=0.15), SmoothRamp(0.0, 1.0, start=0.17, end=0.3)
     (block,) = cut_into_intervals((profile, step, wave), 0.4).blocks()
     joined = join_intervals(block)
-    assert [[span.start for span in group] for group in joined] == [[0.0, 0.1], [0.15], [0.17, 0.2, 0.3]]
+    assert [[interval.start for interval in group] for group in joined] == [
+        [0.0, 0.1],
+        [0.15],
+        [0.17, 0.2, 0.3],
+    ]
 
 
 def test_motion_starts_from_the_equilibrium_before_a_step_at_zero() -> None:
@@ -182,7 +186,10 @@ def test_profiles_that_cannot_be_are_refused(wrong: Callable[[], Profile]) -> No
 def test_lowest_value_of_a_profile(profile: Profile, least: float) -> None:
     assert lower_bound(profile) == least
     values = np.concatenate(
-        [span.inputs(np.linspace(span.start, span.end, 999)) for span in cut_into_intervals((profile,), 2.0)]
+        [
+            interval.inputs(np.linspace(interval.start, interval.end, 999))
+            for interval in cut_into_intervals((profile,), 2.0)
+        ]
     )
     assert values.min() == pytest.approx(least, abs=1e-4)
 

@@ -149,5 +149,5 @@ def test_base_at_the_origin_along_x_is_no_base(base: Base) -> None:
 def test_printed_equations_and_exact_rod_say_which_bases_they_do_not_know() -> None:
     with pytest.raises(InputError, match="leave out base"):
         PrintedArm(mounted(rone2012(), Base(angle=1.0)))
-    with pytest.raises(InputError, match="does not move"):
+    with pytest.raises(InputError, match="has a fixed base"):
         exact_rod(mounted(rone2012(), Base(moves=True)), 1.0)

@@ -123,7 +123,7 @@ def test_cable_without_friction_leaves_no_trace() -> None:
 
 
 def test_friction_without_cables_is_refused_by_name() -> None:
-    with pytest.raises(InputError, match="'cable_friction' without cables"):
+    with pytest.raises(InputError, match="'cable_friction' needs effect 'cables'"):
         Scene(rubbing().arm, (Bending(), CableFriction()))
 
 

@@ -117,6 +117,7 @@ def balance_of(scene: Scene) -> np.ndarray:
     return np.append(passes.residual(), [*powers.values()])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", WITHOUT_EFFECT, ids=lambda effect: effect.name)
 def test_effect_with_parameters_of_zero_is_no_effect(effect: Effect) -> None:
     without = everything_but(effect.name)

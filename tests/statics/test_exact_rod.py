@@ -317,6 +317,7 @@ def test_rod_without_bending_is_refused() -> None:
         exact_rod(without(rone2012(), "bending"), 1.0)
 
 
+@pytest.mark.slow
 def test_rod_ends_where_the_holes_meet() -> None:
     with pytest.raises(RodError, match=r"up to 59\.9.% of the loads: there, holes of cable 'upper' meet"):
         exact_rod(rone2012(), 120.0)

@@ -55,6 +55,7 @@ def closed_form(disks: int, extends: bool) -> float:
     return tension
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("extends", [True, False])
 @pytest.mark.parametrize("subsegments", [1, 2])
 def test_limit_is_that_of_the_closed_form(subsegments: int, extends: bool) -> None:

@@ -51,15 +51,15 @@ class Kernel:
     """A scene's equations of motion under constant tensions."""
 
     def __init__(self, scene: Scene) -> None:
-        self.dynamics, self.span = Dynamics(scene), Interval(0.0, 1.0, PIECES[: scene.cables])
+        self.dynamics, self.interval = Dynamics(scene), Interval(0.0, 1.0, PIECES[: scene.cables])
 
     def rate(self, y: np.ndarray) -> np.ndarray:
         """dy/dt."""
-        return self.dynamics.rate(0.0, y, self.span)
+        return self.dynamics.rate(0.0, y, self.interval)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """d(rate)/dy."""
-        return self.dynamics.jacobian(0.0, y, self.span)
+        return self.dynamics.jacobian(0.0, y, self.interval)
 
 
 @cache
@@ -256,7 +256,7 @@ def test_payload_that_cannot_be_is_refused(wrong: dict[str, Any]) -> None:
 
 
 def test_exact_rod_refuses_payloads_by_name() -> None:
-    with pytest.raises(InputError, match="does not know payloads"):
+    with pytest.raises(InputError, match="has no payloads"):
         exact_rod(laden(rone2012(), Payload(4, 0.01)), 1.0)
 
 

@@ -173,6 +173,7 @@ def test_printed_equations_lift_the_tip_to_22_mm_at_2_n_with_either_sign(
     np.testing.assert_allclose(shape.curvature, [9.17, 6.32, 4.69, 3.96], atol=0.006)
 
 
+@pytest.mark.slow
 def test_exact_rod_sides_with_the_program(found: Rone2012) -> None:
     assert found.figure_4[-1].tension == 2.0
     tip_y = found.figure_4[-1].tip_y

@@ -118,7 +118,9 @@ WOUND = [
 
 
 @pytest.mark.parametrize("curvatures", WOUND)
-@pytest.mark.parametrize("load", ["x", "y", "cable"])
+@pytest.mark.parametrize(
+    "load", ["cable", *(pytest.param(load, marks=pytest.mark.slow) for load in ("x", "y"))]
+)
 def test_whole_arm_and_its_derivatives_are_right_to_1e_14_of_the_largest(
     load: str, curvatures: list[float]
 ) -> None:

@@ -251,14 +251,14 @@ def dynamics_of(case: Case) -> tuple[Dynamics, np.ndarray, Interval]:
 
 def accelerations(case: Case) -> np.ndarray:
     """Of the coordinates, shape (segments, dofs)."""
-    dynamics, y, span = dynamics_of(case)
-    return dynamics.rate(0.0, y, span)[dynamics.size : 2 * dynamics.size].reshape(case.q.shape)
+    dynamics, y, interval = dynamics_of(case)
+    return dynamics.rate(0.0, y, interval)[dynamics.size : 2 * dynamics.size].reshape(case.q.shape)
 
 
 def powers(case: Case) -> np.ndarray:
     """Put in and dissipated, W."""
-    dynamics, y, span = dynamics_of(case)
-    return dynamics.rate(0.0, y, span)[2 * dynamics.size :]
+    dynamics, y, interval = dynamics_of(case)
+    return dynamics.rate(0.0, y, interval)[2 * dynamics.size :]
 
 
 # ---- claims ----

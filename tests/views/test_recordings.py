@@ -46,6 +46,7 @@ def test_log_is_told_by_its_first_bytes(log: Path, tmp_path: Path) -> None:
     assert "its log would replace it" in refused.output
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 def test_recordings_leave_nothing_in_memory(log: Path) -> None:
     def pages() -> int:
