@@ -45,7 +45,7 @@ def _named(name: str, tables: "Sequence[KeyTable]") -> "list[KeyTable]":
         known = sorted({word for each in words.values() for word in each} - {"kind", "profile", "the"})
         holders = [table.heading for table in tables if any(key.name == name for key in table.keys)]
         where = f" It is a key of {', '.join(holders)}." if holders else did_you_mean(name, known)
-        raise InputError(f"no table is named '{name}'.{where}")
+        raise InputError(f"no table is named '{name[:60]}'.{where}")
     return found
 
 

@@ -47,7 +47,7 @@ def play(
     found = [read_log(path) for path in logs]
     if save is not None:
         recording.save(found, save)
-        say(f"wrote {save}")
+        say(f"written: {save}")
     elif web:
         viewer.serve(found, lambda address: say(f"{address}\nUntil Ctrl-C."))
     else:

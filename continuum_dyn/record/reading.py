@@ -36,12 +36,13 @@ def is_hdf5(path: Path) -> bool:
         return False
 
 
-def read_log(path: Path) -> Log:
+def read_log(path: str | Path) -> Log:
     """Read a whole log, or an unfinished one up to its last whole sample.
 
     Raises ``LogError`` for a file that is not a log, or of another format version, or whose names, types or
     shapes are not the format's; it names them.
     """
+    path = Path(path)
     with open_log(path) as file:
         opened = Opened(file)
         found = list(departures(opened))

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from statics.equilibria import Equilibrium
 
 
-def write_log(run: "Run", path: Path) -> None:
+def write_log(run: "Run", path: str | Path) -> None:
     """Write a run. Raises ``LogError`` if the file cannot be written; then nothing is left behind."""
-    with whole_file(path) as file:
+    with whole_file(Path(path)) as file:
         file.attrs.update(attributes_of(run))
         write_scenario(file, run.scenario)
         write_equilibria(file, run)

@@ -29,7 +29,7 @@ def arm_numbers(table: ArmTable) -> Numbers:
     if preset is not None and preset not in PRESETS:
         raise InputError(f"[arm] unknown preset '{preset}'.{did_you_mean(preset, PRESETS)}")
     known = {} if preset is None else PRESETS[preset]
-    for step in (_from_materials, _section, _disk_masses):
+    for step in (replace_materials, _section, _disk_masses):
         given = step(given)
     numbers = known | _spacing(given, known)
     missing = [name for name in ("disks", "disk_spacing") if name not in numbers]
@@ -41,8 +41,9 @@ def arm_numbers(table: ArmTable) -> Numbers:
     return numbers
 
 
-def _from_materials(given: Numbers) -> Numbers:
-    """Materials replaced by the core's modulus and density, and by the disks' density."""
+def replace_materials(given: Numbers) -> Numbers:
+    """Replace materials by the core's modulus and density, and by the disks' density."""
+    given = dict(given)
     if "core_material" in given:
         _refuse_twice(given, "core_material", ("youngs_modulus", "core_density"))
         core = _material(given.pop("core_material"), "core_material")

@@ -44,9 +44,8 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
     motion = build_base_motion(file.base, tables) if file.base is not None else ()
     moves = not all(isinstance(profile, Constant) for profile in motion)
     base = Base(*(profile.initial for profile in motion), moves=moves) if motion else None
-    numbers = arm_numbers(file.arm)
     cables = tuple(build_cable(cable, number) for number, cable in enumerate(file.cables, start=1))
-    arm = build_arm(file.arm, numbers, cables, tuple(file.payloads), base)
+    arm = build_arm(file.arm, arm_numbers(file.arm), cables, tuple(file.payloads), base)
     scene = Scene(arm, effects)
     if damping is not None:
         scene = _damped(scene, damping)
@@ -60,7 +59,7 @@ def build(file: ScenarioFile, name: str, text: str, tables: Tables) -> Scenario:
         base_motion=motion if moves else (),
         chooses_mesh=file.arm.subsegments == "auto",
         title=file.title or name,
-        text=self_contained(text, numbers, scene),
+        text=self_contained(text, scene),
         tables=tables.texts,
     )
 

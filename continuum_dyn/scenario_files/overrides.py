@@ -12,7 +12,7 @@ from textwrap import shorten
 from typing import Any
 
 from continuum_dyn.scenario_files.messages import LISTS
-from continuum_dyn.scenario_files.toml_text import inline_toml, read_toml, toml_text
+from continuum_dyn.scenario_files.toml_text import TooLongError, inline_toml, read_toml, toml_text
 from statics.errors import InputError, did_you_mean
 from statics.support.checked import LONGEST_LINE
 
@@ -68,6 +68,8 @@ def _words(key: str, text: str) -> list[str]:
     words: list[str] = []
     try:
         inside: Any = read_toml(f"{key} = 0")
+    except TooLongError as error:
+        raise InputError(f"--set {_short(text)}: {error}.") from error
     except tomllib.TOMLDecodeError as error:
         raise InputError(
             f"--set {_short(text)}: {_short(key)!r} is not a key. A key has words of letters, digits, - "
@@ -82,6 +84,8 @@ def _words(key: str, text: str) -> list[str]:
 def _value(value: str, text: str) -> Any:
     try:
         return read_toml(f"value = {value}")["value"]
+    except TooLongError as error:
+        raise InputError(f"--set {_short(text)}: {error}.") from error
     except tomllib.TOMLDecodeError as error:
         if _WORD.fullmatch(value):
             return value

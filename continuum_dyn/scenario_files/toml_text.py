@@ -19,12 +19,13 @@ LONGEST_SHOWN = 60
 MISTAKES = {
     "Invalid value": 'no value after =, such as 1.0, true, "text in quotes" or a list in [ ]',
     "Invalid statement": "neither KEY = VALUE nor a [table]",
-    "Expected newline": "more than one value; numbers have a decimal point, not a comma",
+    "Expected newline": "more than one value; units are left out; numbers have a decimal point, not a comma",
     "Expected '='": "a key without = and a value",
     "Expected ']'": "a [table] without its last bracket",
     "Cannot overwrite": "a key given before",
     "Cannot declare": "a table defined before; give it once, or [[NAME]] for each of a list",
     "Cannot mutate": "a table that is already complete",
+    "Unclosed inline": "a table in { } that does not end on its line",
     "Unclosed": "a list without its last bracket",
     "Unterminated": "a text without its last quote",
     "Duplicate": "a key given before",
@@ -34,16 +35,20 @@ MISTAKES = {
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
+class TooLongError(tomllib.TOMLDecodeError):
+    """A key or a number in a file that would take too long to read."""
+
+
 def read_toml(text: str) -> dict[str, Any]:
-    """Read TOML. Raises ``tomllib.TOMLDecodeError``, also for keys and numbers that would take too long."""
+    """Read TOML. Raises ``tomllib.TOMLDecodeError``, or its ``TooLongError``."""
     if _DEEP_KEY.search(text):
-        raise tomllib.TOMLDecodeError(f"a key of more than {MAX_DEPTH} words with dots between them")
+        raise TooLongError(f"a key of more than {MAX_DEPTH} words with dots between them")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         raise
     except ValueError as error:  # Python refuses integers of some thousand digits
-        raise tomllib.TOMLDecodeError("a number of too many digits to compute with") from error
+        raise TooLongError("a number of too many digits to compute with") from error
 
 
 def toml_mistake(text: str, error: tomllib.TOMLDecodeError) -> str:

@@ -72,6 +72,12 @@ ODD = {
         ["arm.disk_inertia=1e-8"],
         "disk_inertia has no effect",
     ),
+    "a payload's mass in vain": (
+        RAMP,
+        ["effects={bending={}}", "payloads=[{disk=4,mass=0.002}]"],
+        "[[payloads]] mass has no effect: only gravity, inertia and mass_damping use it",
+    ),
+    "nothing drives": (STEP, ["cables=[]", "study.duration=0.01"], "with constant inputs"),
     "the core's mass twice": (STEP, ["arm.core_density=8000.0"], "counts twice"),
     "settled from the start": (STEP, ["study.settled_within=0.5"], "longer than the whole motion"),
     "a core that yields": (SCENARIOS / "follower_tip.toml", [], "a strain of 2.03 %"),
@@ -100,6 +106,14 @@ def test_what_is_ordinary_is_not_warned_of(name: str) -> None:
     assert run(SCENARIOS / f"{name}.toml").warnings == ()
 
 
+def test_numbers_that_follow_from_a_description_are_not_called_useless() -> None:
+    described = (
+        "{disks=4,length=0.08,core_radius=4e-4,core_material='steel',"
+        "disk_radius=0.01,disk_thickness=0.003,disk_material='pla'}"
+    )
+    assert run(RAMP, f"arm={described}", "effects={bending={}}", "cables.upper.tension=[0.5]").warnings == ()
+
+
 def test_ramp_that_ends_with_the_run_is_ordinary() -> None:
     ramp = 'cables.upper.tension={profile="ramp",before=0,after=1,start=0,end=1}'
     assert not [text for text in run(STEP, ramp).warnings if "changes" in text]
@@ -107,8 +121,8 @@ def test_ramp_that_ends_with_the_run_is_ordinary() -> None:
 
 def test_warnings_are_in_the_log_the_json_and_the_terminal(tmp_path: Path) -> None:
     found = run(STEP, "study.samples=30")
-    write_log(found, tmp_path / "coarse.h5")
-    log = read_log(tmp_path / "coarse.h5")
+    write_log(found, str(tmp_path / "coarse.h5"))
+    log = read_log(str(tmp_path / "coarse.h5"))
     assert log.attributes["warnings"].splitlines() == list(found.warnings)
     radius, curvatures = 4.0e-4, (log.trajectory["curvature"], log.equilibria["curvature"])
     strain = radius * max(abs(curvature).max() for curvature in curvatures)

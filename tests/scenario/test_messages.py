@@ -65,6 +65,8 @@ def refusal(folder: Path, text: str) -> str:
             "duration = 1,0",
             "numbers have a decimal point, not a comma; read duration = 1,0",
         ),
+        ("duration = 1.0", "duration = 1 s", "units are left out"),
+        ("-9.81] }", "-9.81]", "a table in { } that does not end on its line"),
         ("[study]", "[arm]\n[study]", "a table defined before"),
     ],
 )

@@ -146,3 +146,15 @@ def test_unknown_keys_are_refused_before_anything_is_written(name: str, tmp_path
 def test_explain_tells_of_the_arm_as_it_is_changed() -> None:
     result = runner.invoke(app, ["explain", str(STEP), "--set", "arm.disks=5"])
     assert "5 segments, 10 coordinates" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ("study.samples=" + "9" * 5000, "a number of too many digits"),
+        ("a." * 40 + "a=1", "more than 32 words"),
+    ],
+)
+def test_what_would_take_too_long_to_read_is_said_to_be_too_long(change: str, why: str) -> None:
+    with pytest.raises(InputError, match=why):
+        load_scenario(STEP, [change])
