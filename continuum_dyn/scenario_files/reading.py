@@ -89,7 +89,8 @@ def _checked(content: dict[str, Any], mistakes: list[Mistake]) -> ScenarioFile |
     try:
         return ScenarioFile.model_validate_json(json.dumps(_physical(content), default=str))
     except ValidationError as error:
-        mistakes += mistakes_of(error)
+        known = {mistake.place for mistake in mistakes}
+        mistakes += (mistake for mistake in mistakes_of(error) if mistake.place not in known)
     return None
 
 
