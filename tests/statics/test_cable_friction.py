@@ -150,7 +150,7 @@ def test_arm_that_is_pulled_over_to_its_other_rest_is_settled_between_its_branch
     run = simulate(Scenario(scene, (pull,), StepResponseStudy(12.0, samples=61), Solver("chain", rtol=1e-6)))
     assert run.outcome is Outcome.SETTLED
     assert (
-        "at another equilibrium than the one found from the start: tip at x 0.04348 m, y 0.05941 m"
+        "at another equilibrium than the one next to the start: tip at x 0.04348 m, y 0.05941 m"
         in run.message
     )
     assert run.static_gap is not None
