@@ -219,12 +219,14 @@ def shrinkage(part: float, order: int) -> float:
 
 
 @compiled
-def growth(part: float, last_part: float, order: int) -> float:
+def growth(part: float, last_part: float, ratio: float, order: int) -> float:
     """Factor for the step after one whose error was ``part`` of the tolerance, after one of ``last_part``.
 
-    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds.
+    Proportional and integral control (Hairer and Wanner 1996, sec. IV.2), within bounds. ``ratio`` is that of
+    the two steps, or 0 for the first of them.
     """
-    factor = SAFETY * part ** (-0.7 / order) * last_part ** (0.3 / order)
+    believed = max(part, LEAST_FALL * last_part * ratio**order)
+    factor = SAFETY * believed ** (-0.7 / order) * last_part ** (0.3 / order)
     return min(MOST_GROWTH, max(MOST_SHRINK, factor))
 
 
@@ -243,10 +245,9 @@ def advance(
 ) -> tuple[int, int, float, float, int, int]:
     """Steps from row 0 of the records until they are full or ``t_bound`` (s) is reached.
 
-    The first is tried with size ``h``, and none is longer than ``longest``, s.
-    A step that leaves the arm at a geometric limit or not finite is taken only as the first of its batch,
-    so that the ones before it are not lost with it. Returns how it ended, the steps taken, the next step's
-    size, the rate of convergence, the rejected steps, and the Newton iterations.
+    The first is tried with size ``h``, none is longer than ``longest``, s. One that leaves the arm at a limit
+    or not finite is taken only as the first of its batch, so that those before it are kept. Returns how it
+    ended, steps taken, next step's size, rate of convergence, rejected steps, and Newton iterations.
     """
     times, states, accelerations, _ = records
     count = len(method[1])
@@ -254,8 +255,7 @@ def advance(
     shape = (count, n, dofs)
     stages = (np.empty(shape), np.empty(shape), np.empty(shape))
     workspace = (np.empty((n, passes.chain_columns)), np.empty((6, n, dofs)), np.empty(SCALARS))
-    taken, rejected, iterations = 0, 0, 0
-    last_part, last_step = 1.0, 0.0
+    taken, rejected, iterations, last_part, last_step = 0, 0, 0, 1.0, 0.0
     while taken < len(times) - 1:
         t = times[taken]
         left = t_bound - t
@@ -277,8 +277,7 @@ def advance(
             h = step * shrinkage(error / tolerance, order)
             continue
         part = max(error / tolerance, 1e-6)
-        least = LEAST_FALL * last_part * (step / last_step) ** order if last_step > 0.0 else 0.0
-        factor = growth(max(part, least), last_part, order)
+        factor = growth(part, last_part, step / last_step if last_step > 0.0 else 0.0, order)
         last_part, last_step = part, step
         h = max(h, step) if reaches and factor > 1.0 else step * factor
         next_y[2 * n * dofs], next_y[2 * n * dofs + 1] = 0.0, 0.0
