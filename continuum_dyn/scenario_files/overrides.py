@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from textwrap import shorten
 from typing import Any
 
-from continuum_dyn.scenario_files.messages import LISTS
+from continuum_dyn.scenario_files.mistakes.messages import LISTS
 from continuum_dyn.scenario_files.toml_text import TooLongError, inline_toml, read_toml, toml_text
 from statics.errors import InputError, did_you_mean
 from statics.support.checked import LONGEST_LINE

@@ -18,9 +18,9 @@ from continuum_dyn.scenario.scenario import Scenario
 from continuum_dyn.scenario.solver import FIXED_STEP
 from continuum_dyn.scenario_files.building import build
 from continuum_dyn.scenario_files.csv_table import Tables, table_text
-from continuum_dyn.scenario_files.messages import Mistake, explain, mistakes_of, where
+from continuum_dyn.scenario_files.mistakes.messages import Mistake, explain, mistakes_of, where
+from continuum_dyn.scenario_files.mistakes.parts import mistakes_of_parts
 from continuum_dyn.scenario_files.overrides import apply_overrides
-from continuum_dyn.scenario_files.part_mistakes import mistakes_of_parts
 from continuum_dyn.scenario_files.tables import ScenarioFile
 from continuum_dyn.scenario_files.text import read_text
 from continuum_dyn.scenario_files.toml_text import read_toml, toml_mistake

@@ -12,9 +12,9 @@ from scenario_mutants import mutant
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
 from continuum_dyn.scenario.studies import STUDIES
-from continuum_dyn.scenario_files.messages import _known
+from continuum_dyn.scenario_files.mistakes.messages import _known
+from continuum_dyn.scenario_files.mistakes.synonyms import SYNONYMS, meant_by
 from continuum_dyn.scenario_files.reading import load_scenario
-from continuum_dyn.scenario_files.synonyms import SYNONYMS, meant_by
 from continuum_dyn.scenario_files.tables import ScenarioFile
 from statics import InputError
 

@@ -15,8 +15,8 @@ from pydantic import BaseModel, ValidationError
 from continuum_dyn.scenario.profiles import PROFILES
 from continuum_dyn.scenario.solver import Accuracy, Method, Solver
 from continuum_dyn.scenario.studies import STUDIES
-from continuum_dyn.scenario_files.expected import as_read, expected
-from continuum_dyn.scenario_files.synonyms import meant_by
+from continuum_dyn.scenario_files.mistakes.expected import as_read, expected
+from continuum_dyn.scenario_files.mistakes.synonyms import meant_by
 from continuum_dyn.scenario_files.tables import (
     OF_EFFECTS,
     REFUSED,

@@ -23,7 +23,7 @@ from continuum_dyn.scenario_files.building import (
     given_drive,
 )
 from continuum_dyn.scenario_files.csv_table import Tables
-from continuum_dyn.scenario_files.messages import Mistake
+from continuum_dyn.scenario_files.mistakes.messages import Mistake
 from continuum_dyn.scenario_files.tables import (
     CableTable,
     LoadTable,

@@ -1,0 +1,1 @@
+"""Mistakes of scenario files: found part by part, and said in words."""
