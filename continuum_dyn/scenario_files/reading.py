@@ -85,10 +85,15 @@ def _changed(text: str, path: Path, overrides: Sequence[str]) -> str:
 
 
 def _checked(content: dict[str, Any], mistakes: list[Mistake]) -> ScenarioFile | None:
-    """The tables of a file, or None after adding what is wrong with them to the mistakes."""
+    """The tables of a file, or None after adding what is wrong with them to the mistakes.
+
+    Raises ``RecursionError`` for a file that is nested too deeply.
+    """
     try:
         return ScenarioFile.model_validate_json(json.dumps(_physical(content), default=str))
     except ValidationError as error:
+        if error.errors()[0]["type"] == "json_invalid":
+            raise RecursionError from error
         known = {mistake.place for mistake in mistakes}
         mistakes += (mistake for mistake in mistakes_of(error) if mistake.place not in known)
     return None

@@ -230,3 +230,11 @@ def test_synonyms_lead_to_keys_and_are_none(table: str) -> None:
             assert word == word.lower()
             assert word not in own, f"{word} is a key of [{table}]"
             assert meant_by(word.upper(), table) == instead, f"{word} is listed twice for [{table}]"
+
+
+@pytest.mark.parametrize("depth", [250, 400, 100_000])
+def test_file_that_is_nested_too_deeply_is_refused_as_a_whole(depth: int, tmp_path: Path) -> None:
+    path = tmp_path / "deep.toml"
+    path.write_text(f"title = {'[' * depth}{']' * depth}\nunknown = 1\n")
+    with pytest.raises(InputError, match=r"deep\.toml: nested too deeply to be a scenario\.$"):
+        load_scenario(path)
