@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from continuum_dyn.commands.shipped import FIRST, shipped, shipped_scenario, title_of
 from continuum_dyn.commands.terminal.output import say
+from continuum_dyn.scenario_files.shipped import FIRST, shipped, shipped_scenario, title_of
 from continuum_dyn.scenario_files.text import read_text
 from statics.errors import InputError
 

@@ -8,11 +8,11 @@ from typer.testing import CliRunner
 
 from continuum_dyn import load_scenario
 from continuum_dyn.cli import app
-from continuum_dyn.commands.shipped import SHORT_NAMES, shipped, shipped_scenario
 from continuum_dyn.effects import EFFECTS
 from continuum_dyn.scenario.profiles import PROFILES
 from continuum_dyn.scenario.studies import STUDIES
 from continuum_dyn.scenario_files.keys import key_tables
+from continuum_dyn.scenario_files.shipped import SHORT_NAMES, shipped, shipped_scenario
 from continuum_dyn.scenario_files.tables import NAMED_ELSEWHERE
 
 TEMPLATE = shipped_scenario("first")

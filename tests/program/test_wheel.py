@@ -75,9 +75,10 @@ def test_wheel_holds_the_packages_with_their_data_and_nothing_else(wheel: Path) 
     }
     for package in ("statics", "continuum_dyn"):
         assert f"{package}/py.typed" in names
-    assert {"continuum_dyn/commands/first_scenario.toml", "continuum_dyn/scenario_files/examples.toml"} <= {
-        *names
-    }
+    assert {
+        "continuum_dyn/scenario_files/first_scenario.toml",
+        "continuum_dyn/scenario_files/examples.toml",
+    } <= {*names}
     scenarios = REPOSITORY / "scenarios"
     held = {name.removeprefix("continuum_dyn/scenarios/") for name in names if "/scenarios/" in name}
     assert held == {file.relative_to(scenarios).as_posix() for file in scenarios.rglob("*") if file.is_file()}

@@ -88,7 +88,7 @@ def rows_shown(points: "Sequence[Equilibrium]") -> list[int]:
 
 
 def mark(point: "Equilibrium") -> str:
-    """What happens at a point: it is not found, jumps, folds or branches; else nothing."""
+    """Event at a point, in words: not found, a jump, a fold or a branching; empty for none."""
     if not point.found:
         return "not found"
     if point.jumped:
