@@ -121,7 +121,7 @@ class Timeline(Iterable[Interval]):
 
     @property
     def last(self) -> Interval:
-        """What is left of the last interval just before the end."""
+        """Rest of the last interval just before the end."""
         return self.after(float(np.nextafter(self.end, self.start))).first
 
     def after(self, time: float) -> "Timeline":

@@ -37,7 +37,7 @@ def failure_message(
 
 
 def _drives(point: Equilibrium) -> str:
-    """What acts on an arm at that point besides its weight and constant loads; empty if nothing does."""
+    """Inputs that act on an arm at that point, in words; empty if all are zero."""
     named = {"tension": point.tension, "load factor": point.load_factor}
     return " and ".join(name for name, values in named.items() if values is not None and np.any(values))
 

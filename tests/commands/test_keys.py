@@ -54,7 +54,7 @@ def test_examples_are_what_a_file_may_hold(study: str, profile: str) -> None:
     content["effects"] = {place[8:]: table for place, table in given.items() if place.startswith("effects.")}
     content["study"] = {"kind": study} | given.get(f"study.{study}", {})
     content["base"] |= {"x": {"profile": profile} | given[f"profile.{profile}"]}
-    ScenarioFile.model_validate_json(json.dumps(content))
+    assert ScenarioFile.model_validate_json(json.dumps(content)).study.kind == study
 
 
 def value_of(text: str) -> Any:

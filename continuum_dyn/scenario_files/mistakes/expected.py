@@ -60,4 +60,4 @@ _WANTED: dict[str, Callable[[dict[str, Any]], str]] = {
     "too_long": lambda context: f"a list of at most {context['max_length']} values",
     **dict.fromkeys(("literal_error", "enum"), lambda context: f"one of {context['expected']}"),
 }
-"""What is expected, by the type of pydantic's error, from its context."""
+"""Words for the expected value, from the context of pydantic's error, by its type."""

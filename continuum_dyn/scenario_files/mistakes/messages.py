@@ -47,7 +47,7 @@ TABLE_MEANINGS = {
     "effects": ", and in it a line for each effect, such as bending = {}",
     "study": ' with a kind, such as kind = "equilibrium"',
 }
-"""What to write in the tables that every file has."""
+"""Advice for a missing table, for each of those that every file has."""
 
 _KEYS: dict[str, Any] = {
     "": ScenarioFile,
@@ -171,7 +171,7 @@ def _missing(place: list[str], inside: str, given: Any) -> str:
 
 
 def _advice(place: list[str], given: Any) -> str:
-    """What to write where a table or a list of tables stands in the other's place, or in a value's."""
+    """Advice for a table in place of a list of tables or the reverse, or for a value in place of a table."""
     key = place[-1]
     if place[0] == "effects" and len(place) == 2:
         required = ", ".join(f"{name} = ..." for name in _required(OF_EFFECTS[key]))

@@ -120,7 +120,7 @@ SYNONYMS: dict[str, dict[str, str]] = {
 
 
 def meant_by(word: str, table: str) -> str:
-    """What to write for a word in a table such as "arm" or "study.ramp"; empty if it is not known."""
+    """The key meant by a word in a table such as "arm" or "study.ramp"; empty if it is not known."""
     for name in (table, table.partition(".")[0]):
         for instead, words in SYNONYMS.get(name, {}).items():
             if word.lower() in words.split():

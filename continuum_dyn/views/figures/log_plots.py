@@ -56,7 +56,7 @@ def picture(log: Log, parts: Sequence[str] = (), at: Sequence[float] = (), stret
 
 
 def _panels(log: Log, series: LogSeries, shapes: dict[str, Panel], parts: Sequence[str]) -> dict[str, Panel]:
-    """What each axes shows, by name. Raises ``InputError`` if a log has nothing of the ``parts``."""
+    """Panels by the names of their axes. Raises ``InputError`` if a log has nothing of the ``parts``."""
     changes = _histories(log, series)
     by_part = {"shapes": shapes, **(changes if parts or len(series.values) > 1 else {})}
     panels = {
@@ -68,7 +68,7 @@ def _panels(log: Log, series: LogSeries, shapes: dict[str, Panel], parts: Sequen
 
 
 def _histories(log: Log, series: LogSeries) -> dict[str, dict[str, Panel]]:
-    """What is drawn over time, or over the drive, by part."""
+    """Panels over time, or over the drive, by part."""
     inputs = inputs_of(log, series.columns)
     energies = {"energies": partial(draw_energies, series=series)} if energies_of(series) else {}
     return {

@@ -50,7 +50,10 @@ class Input(NamedTuple):
 
 
 def series_of(log: Log) -> LogSeries:
-    """What is drawn of a log. Raises ``InputError`` if it holds nothing, or numbers too large to draw."""
+    """Columns of a log to draw, with their axis.
+
+    Raises ``InputError`` if the log holds nothing, or numbers too large to draw.
+    """
     series = _series(log)
     for name, values in series.columns.items():
         if np.abs(values).max(initial=0.0) > LARGEST:

@@ -76,7 +76,7 @@ def _draw_prices(axes: Mapping[str, Any], prices: Sequence[Price], look: Mapping
 
 
 def _least_work(prices: Sequence[Price]) -> list[Price]:
-    """Those that no other beats in error at its work or less."""
+    """Prices whose error no other reaches with the same work or less."""
     found: list[Price] = []
     for price in sorted(prices, key=lambda p: (p.segment_evaluations, p.error)):
         if not found or price.error < found[-1].error:
